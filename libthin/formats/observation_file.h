@@ -1,0 +1,58 @@
+#pragma once
+
+// Any file of soundings, whatever its layout: recognised by content, read into an ObservationSet, and written again with
+// only the retained observations, in its own layout and with every retained value as it came.
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "libthin/foundation/options.h"
+#include "libthin/foundation/result.h"
+#include "libthin/observations/observation_set.h"
+
+namespace thin {
+
+// A part of a file that could not be used, and why, in a sentence for people.
+struct SkippedPart {
+  std::uint32_t message = 0;  // counted from 0 over all messages of the file
+  std::uint64_t offset = 0;   // of its first byte
+  std::string reason;
+};
+
+struct ReadObservations {
+  ObservationSet observations;  // AMSU-A: channels 1..15; source.file is 0
+  std::string layout;           // "bufr"
+  std::string instrument;       // "AMSU-A"
+  std::uint32_t message_count = 0;
+  std::vector<SkippedPart> skipped;  // messages of other kinds, damaged messages, stray bytes
+};
+
+// Errors: input, where nothing in the file can be used (with the reason and the remedy); incomplete, where the end of
+// the file is cut off, as of a transfer that still runs; temporary, where the machine fails.
+Result<ReadObservations> read_observations(const std::string& path);
+
+struct OutputOptions {
+  enum class GtsHeaders { keep, drop };
+  GtsHeaders gts_headers = GtsHeaders::keep;  // keep: bulletin envelopes stay, their length field made right
+  enum class OtherMessages { keep, drop };
+  OtherMessages other_messages = OtherMessages::keep;  // of kinds that are not thinned
+  void declare(OptionTable& table);
+};
+
+struct ExtractionSummary {
+  std::uint32_t messages = 0;
+  std::uint64_t subsets = 0;  // of the retained observations
+  std::uint64_t bytes = 0;
+};
+
+// Writes the retained observations of `original_path` to `output_path` (created or replaced; not yet synced to disk).
+// retained: references into the original, any order, no duplicates; `file` is not looked at. Messages are written in
+// their order in the original, subsets in theirs. Where nothing would be written, no file is created and messages is 0.
+// The same input gives the same bytes.
+Result<ExtractionSummary> extract_observations(const std::string& original_path,
+                                               std::span<const SourceReference> retained,
+                                               const std::string& output_path, const OutputOptions& options);
+
+}  // namespace thin

@@ -1,0 +1,28 @@
+#include "libthin/foundation/parallel.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace thin {
+
+void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, std::max<std::size_t>(grain, 1)),
+                    [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); });
+}
+
+struct ThreadLimit::Control {
+  tbb::global_control limit;
+};
+
+ThreadLimit::ThreadLimit(int count) {
+  if (count > 0)
+    control_ = std::make_unique<Control>(
+        Control{{tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count)}});
+}
+
+ThreadLimit::~ThreadLimit() = default;
+
+}  // namespace thin
