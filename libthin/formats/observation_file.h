@@ -1,7 +1,7 @@
 #pragma once
 
-// Any file of soundings, whatever its layout: recognised by content, read into an ObservationSet, and written again with
-// only the retained observations, in its own layout and with every retained value as it came.
+// Any file of soundings, whatever its layout: recognised by content, read into an ObservationSet, and written again
+// with only the retained observations, in its own layout and with every retained value as it came.
 
 #include <cstdint>
 #include <span>
