@@ -8,7 +8,6 @@
 #include <fstream>
 #include <set>
 #include <sstream>
-#define TOML_EXCEPTIONS 0
 #include <toml++/toml.h>
 
 namespace thin {
@@ -70,29 +69,29 @@ struct Configuration::Content {
 };
 
 Result<Configuration> Configuration::read(const std::string& path) {
+  errno = 0;
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
-  errno = 0;
-  // An empty file leaves the stream failed without being an error: it is a configuration of defaults.
-  if (!file || (!(text << file.rdbuf()) && file.bad())) {
-    Error error = system_error("read the configuration", path, errno ? errno : EIO);
+  // Streaming nothing sets the stream's fail bit, so an empty file (a configuration of defaults) is told by errno.
+  if (file) text << file.rdbuf();
+  if (errno != 0) {
+    Error error = system_error("read the configuration", path, errno);
     if (error.kind == ErrorKind::internal) error.kind = ErrorKind::configuration;
     return error;
   }
-  if (errno == EISDIR) return Error{ErrorKind::configuration, path + " is a directory: name the configuration file"};
   return parse(text.str(), path);
 }
 
 Result<Configuration> Configuration::parse(const std::string& text, const std::string& name) {
-  toml::parse_result parsed = toml::parse(text, name);
-  if (!parsed) {
-    const auto& where = parsed.error().source().begin;
-    return Error{ErrorKind::configuration,
-                 fmt::format("{}:{}:{}: {}", name, where.line, where.column, parsed.error().description())};
-  }
   auto content = std::make_shared<Content>();
   content->name = name;
-  content->root = std::move(parsed).table();
+  try {
+    content->root = toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    const auto& where = error.source().begin;
+    return Error{ErrorKind::configuration,
+                 fmt::format("{}:{}:{}: {}", name, where.line, where.column, error.description())};
+  }
   return Configuration(std::move(content));
 }
 

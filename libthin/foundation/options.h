@@ -27,12 +27,12 @@ using OptionValue = std::variant<bool, std::int64_t, double, std::string, std::v
                                  std::vector<std::int64_t>, std::vector<double>>;
 
 struct OptionFacts {
-  std::string unit;  // "km", "K", "s"; empty for none
+  std::string unit = {};  // "km", "K", "s"; empty for none
   std::optional<double> minimum = {};
   std::optional<double> maximum = {};
   std::optional<double> above = {};  // exclusive lower limit
   std::vector<std::string> choices = {};
-  std::string explanation;
+  std::string explanation = {};
 };
 
 struct Option {

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "libthin/thinning/thinning_method.h"
+
+namespace thin {
+
+// One observation per box: latitude bands of equal height, each cut into boxes of nearly equal area; retained is the
+// observation nearest to the centre of its box. O(n).
+class Box : public ThinningMethod {
+ public:
+  void declare_options(OptionTable& table) override;
+  Result<Retained> thin(const ObservationSet& observations) const override;
+
+ private:
+  double horizontal_mesh_km_ = 75;
+};
+
+}  // namespace thin

@@ -1,0 +1,121 @@
+#include "libthin/foundation/configuration.h"
+
+#include <gtest/gtest.h>
+
+namespace thin {
+namespace {
+
+enum class Mode { fast, careful };
+
+struct Sample {
+  bool flag = false;
+  int count = 3;
+  double size_km = 75;
+  std::string label = "none";
+  std::optional<double> limit;
+  std::vector<int> channels;
+  std::vector<double> factors = {1.5};
+  Mode mode = Mode::fast;
+  OptionTable table;
+
+  Sample() {
+    table.add("flag", flag, {.explanation = "a flag"});
+    table.add("count", count, {.minimum = 1, .maximum = 9});
+    table.add("size_km", size_km, {.unit = "km", .above = 0});
+    table.add("label", label, {});
+    table.add("limit", limit, {.unit = "K", .minimum = 0});
+    table.add("channels", channels, {.minimum = 1, .maximum = 15});
+    table.add("factors", factors, {});
+    table.add_choice("mode", mode, std::vector<std::pair<std::string, Mode>>{{"fast", Mode::fast}, {"careful", Mode::careful}}, {});
+  }
+  Sample(const Sample&) = delete;
+};
+
+// What reading `text` as [sample] says; empty where all is well.
+std::string problems(const std::string& text, Sample& sample) {
+  Result<Configuration> file = Configuration::parse(text, "c.toml");
+  if (!file) return file.error().message;
+  file->read_section("sample", sample.table);
+  const Result<void> done = file->finish();
+  return done ? "" : done.error().message;
+}
+
+std::string problems(const std::string& text) {
+  Sample sample;
+  return problems(text, sample);
+}
+
+TEST(Configuration, StoresWhatIsThereAndLeavesTheRest) {
+  Sample sample;
+  EXPECT_EQ(problems("[sample]\nflag = true\ncount = 5\nsize_km = 100\nlimit = 0.5\nchannels = [5, 6]\nfactors = [1, 2.5]\n"
+                     "mode = 'careful'\n",
+                     sample),
+            "");
+  EXPECT_TRUE(sample.flag);
+  EXPECT_EQ(sample.count, 5);
+  EXPECT_EQ(sample.size_km, 100);
+  EXPECT_EQ(sample.label, "none");
+  EXPECT_EQ(sample.limit, 0.5);
+  EXPECT_EQ(sample.channels, (std::vector<int>{5, 6}));
+  EXPECT_EQ(sample.factors, (std::vector<double>{1, 2.5}));
+  EXPECT_EQ(sample.mode, Mode::careful);
+}
+
+TEST(Configuration, AnEmptyFileIsAllDefaults) { EXPECT_EQ(problems(""), ""); }
+
+TEST(Configuration, NamesFileLineAndWhatWasMeant) {
+  EXPECT_EQ(problems("[sample]\n\ncuont = 5\n"), "c.toml:3:1: unknown key \"cuont\" in [sample]; did you mean \"count\"?");
+  EXPECT_EQ(problems("[smaple]\n"), "c.toml:1:2: unknown section [smaple]; did you mean [sample]?");
+  EXPECT_EQ(problems("[sample]\nxyzzy_plugh = 1\n").substr(0, 67),
+            "c.toml:2:1: unknown key \"xyzzy_plugh\" in [sample]; known are flag, ");
+}
+
+TEST(Configuration, NamesTheValueAndTheLimit) {
+  EXPECT_EQ(problems("[sample]\ncount = 10\n"), "c.toml:2:9: sample.count must be at most 9, not 10");
+  EXPECT_EQ(problems("[sample]\nsize_km = 0\n"), "c.toml:2:11: sample.size_km must be greater than 0 km, not 0");
+  EXPECT_EQ(problems("[sample]\ncount = 'five'\n"), "c.toml:2:9: sample.count must be an integer, not text");
+  EXPECT_EQ(problems("[sample]\nmode = 'slow'\n"), "c.toml:2:8: sample.mode must be one of fast, careful, not \"slow\"");
+  EXPECT_EQ(problems("[sample]\nchannels = [5, 16]\n"), "c.toml:2:12: sample.channels element 2 must be at most 15, not 16");
+  EXPECT_EQ(problems("[sample]\nsize_km = nan\n"), "c.toml:2:11: sample.size_km must be a finite number, not nan");
+}
+
+TEST(Configuration, ReportsAllProblemsInTheOrderOfTheFile) {
+  EXPECT_EQ(problems("stray = 1\n[sample]\nflag = 1\ncount = 0\n"),
+            "c.toml:1:1: \"stray\" stands outside of any section as a integer; sections are [sample]\n"
+            "c.toml:3:8: sample.flag must be true or false, not an integer\n"
+            "c.toml:4:9: sample.count must be at least 1, not 0");
+}
+
+TEST(Configuration, BrokenTomlNamesItsLine) {
+  const Result<Configuration> file = Configuration::parse("[sample]\ncount = = 5\n", "c.toml");
+  ASSERT_FALSE(file);
+  EXPECT_EQ(file.error().kind, ErrorKind::configuration);
+  EXPECT_EQ(file.error().message.substr(0, 9), "c.toml:2:");
+}
+
+TEST(Configuration, AMissingFileIsAConfigurationError) {
+  const Result<Configuration> file = Configuration::read("/nowhere/c.toml");
+  ASSERT_FALSE(file);
+  EXPECT_EQ(file.error().kind, ErrorKind::configuration);
+  EXPECT_NE(file.error().message.find("/nowhere/c.toml: No such file"), std::string::npos) << file.error().message;
+  EXPECT_FALSE(Configuration::read("/tmp"));
+}
+
+TEST(Configuration, CanonicalTextForgetsLayout) {
+  const auto a = Configuration::parse("[sample]\ncount = 5\nflag = true\n", "a");
+  const auto b = Configuration::parse("# hello\n[sample]\nflag    = true # yes\ncount=5\n", "b");
+  EXPECT_EQ(a->canonical_text(), b->canonical_text());
+}
+
+TEST(Options, KnowTheirDefaults) {
+  Sample sample;
+  sample.count = 7;
+  EXPECT_EQ(sample.table.find("count")->default_value, "3");
+  EXPECT_EQ(sample.table.find("count")->current_value(), "7");
+  EXPECT_EQ(sample.table.find("limit")->default_value, "unset");
+  EXPECT_EQ(sample.table.find("mode")->default_value, "\"fast\"");
+  EXPECT_EQ(sample.table.find("factors")->default_value, "[1.5]");
+}
+
+}  // namespace
+}  // namespace thin
