@@ -10,7 +10,6 @@ find_package(CLI11 REQUIRED)
 find_package(SQLite3 REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 pkg_check_modules(geographiclib REQUIRED IMPORTED_TARGET geographiclib)
-pkg_check_modules(eccodes REQUIRED IMPORTED_TARGET eccodes)
 pkg_check_modules(netcdf REQUIRED IMPORTED_TARGET netcdf)
 pkg_check_modules(systemd REQUIRED IMPORTED_TARGET libsystemd)
 
@@ -20,3 +19,10 @@ find_library(LZ4_LIBRARY lz4 REQUIRED)
 add_library(flann_headers INTERFACE)
 target_include_directories(flann_headers SYSTEM INTERFACE ${FLANN_INCLUDE_DIR})
 target_link_libraries(flann_headers INTERFACE ${LZ4_LIBRARY})
+
+# Debian's pkg-config file of ecCodes names an include directory that does not exist.
+find_path(ECCODES_INCLUDE_DIR eccodes.h REQUIRED)
+find_library(ECCODES_LIBRARY eccodes REQUIRED)
+add_library(PkgConfig::eccodes INTERFACE IMPORTED GLOBAL)
+target_include_directories(PkgConfig::eccodes SYSTEM INTERFACE ${ECCODES_INCLUDE_DIR})
+target_link_libraries(PkgConfig::eccodes INTERFACE ${ECCODES_LIBRARY})
