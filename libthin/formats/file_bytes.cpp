@@ -61,8 +61,10 @@ Result<std::vector<std::uint8_t>> read_file_bytes(const std::string& path) {
 Result<void> write_file_bytes(const std::string& path, std::span<const std::uint8_t> bytes) {
   Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
   if (file.number() < 0) return system_error("create", path, errno);
+  struct stat facts {};
+  const bool removable = ::fstat(file.number(), &facts) == 0 && S_ISREG(facts.st_mode);
   const auto fail = [&](int error_number) {
-    ::unlink(path.c_str());
+    if (removable) ::unlink(path.c_str());
     return system_error("write", path, error_number);
   };
   while (!bytes.empty()) {
