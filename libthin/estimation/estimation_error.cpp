@@ -41,13 +41,16 @@ class PointError {
 }  // namespace
 
 EstimationError estimation_error(const NeighbourhoodTable& table, std::span<const double> values, std::size_t channels,
-                                 std::span<const std::uint8_t> retained) {
-  const std::size_t points = table.evaluation_point_count();
+                                 std::span<const std::uint8_t> retained, std::span<const std::uint8_t> counted) {
+  std::vector<std::size_t> rows;
+  for (std::size_t q = 0; q < table.evaluation_point_count(); ++q)
+    if (counted.empty() || counted[q]) rows.push_back(q);
+  const std::size_t points = rows.size();
   std::vector<double> squared(points * channels), full_squared(points * channels);
   parallel_ranges(points, 1024, [&](std::size_t begin, std::size_t end) {
     PointError point_error(channels);
-    for (std::size_t q = begin; q < end; ++q)
-      point_error.evaluate(table, q, values, retained, &squared[q * channels], &full_squared[q * channels]);
+    for (std::size_t i = begin; i < end; ++i)
+      point_error.evaluate(table, rows[i], values, retained, &squared[i * channels], &full_squared[i * channels]);
   });
 
   // One thread sums, in the order of the points: the bits must not depend on the cores.

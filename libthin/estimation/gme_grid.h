@@ -10,7 +10,9 @@ namespace thin {
 
 constexpr int kMaximumGmeLevel = 9;
 
-constexpr std::size_t gme_vertex_count(int level) { return 10 * (std::size_t{1} << (2 * level)) + 2; }
+constexpr std::size_t gme_vertex_count(int level) {
+  return 10 * (std::size_t{1} << (2 * level)) + 2;
+}
 
 // All 10 * 4^level + 2 vertices, on the WGS84 ellipsoid, km: the icosahedron with a vertex at each pole, each edge
 // halved `level` times and every midpoint projected on the unit sphere. The direction of a vertex is its geocentric

@@ -1,15 +1,15 @@
 #pragma once
 
-// Channels in groups of four doubles, which the compiler maps to whatever vector registers there are. Sums over channels
-// are taken lane by lane and then across in a fixed order, so that the bits do not depend on the registers.
+// Channels in groups of four doubles, which the compiler maps to whatever vector registers there are. Sums over
+// channels are taken lane by lane and then across in a fixed order, so that the bits do not depend on the registers.
 
 #include <cstddef>
 #include <cstring>
 #include <span>
 #include <vector>
 
-// Clones for AVX2 of the functions that profit, chosen when the program starts. Fused multiply-add stays off (see the top
-// CMakeLists.txt). Sanitizers start too late for the choice.
+// Clones for AVX2 of the functions that profit, chosen when the program starts. Fused multiply-add stays off (see the
+// top CMakeLists.txt). Sanitizers start too late for the choice.
 #if defined(__x86_64__) && !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
 #define THIN_VECTOR_CLONES __attribute__((target_clones("avx2", "default")))
 #else
@@ -31,10 +31,14 @@ inline __attribute__((always_inline)) Lanes load(const double* from) {
 inline __attribute__((always_inline)) void store(const Lanes& lanes, double* to) {
   std::memcpy(to, &lanes, sizeof lanes);
 }
-inline __attribute__((always_inline)) double across(const Lanes& x) { return (x[0] + x[1]) + (x[2] + x[3]); }
+inline __attribute__((always_inline)) double across(const Lanes& x) {
+  return (x[0] + x[1]) + (x[2] + x[3]);
+}
 
 // Channels of a row, rounded up to whole groups.
-constexpr std::size_t padded(std::size_t channels) { return (channels + kLaneCount - 1) / kLaneCount * kLaneCount; }
+constexpr std::size_t padded(std::size_t channels) {
+  return (channels + kLaneCount - 1) / kLaneCount * kLaneCount;
+}
 
 // rows x channels as rows x padded(channels), the rest filled with 0.
 inline std::vector<double> pad_rows(std::span<const double> values, std::size_t channels) {

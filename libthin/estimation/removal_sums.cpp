@@ -55,11 +55,16 @@ THIN_VECTOR_CLONES std::uint32_t refresh_pairs(const RowView& row, Pair* pairs, 
                                                const std::uint8_t* retained, const double* values, double* cache,
                                                std::size_t width) {
   switch (width) {
-    case 4: return refresh_pairs<4>(row, pairs, size, retained, values, cache, width);
-    case 8: return refresh_pairs<8>(row, pairs, size, retained, values, cache, width);
-    case 12: return refresh_pairs<12>(row, pairs, size, retained, values, cache, width);
-    case 16: return refresh_pairs<16>(row, pairs, size, retained, values, cache, width);
-    default: return refresh_pairs<0>(row, pairs, size, retained, values, cache, width);
+    case 4:
+      return refresh_pairs<4>(row, pairs, size, retained, values, cache, width);
+    case 8:
+      return refresh_pairs<8>(row, pairs, size, retained, values, cache, width);
+    case 12:
+      return refresh_pairs<12>(row, pairs, size, retained, values, cache, width);
+    case 16:
+      return refresh_pairs<16>(row, pairs, size, retained, values, cache, width);
+    default:
+      return refresh_pairs<0>(row, pairs, size, retained, values, cache, width);
   }
 }
 
@@ -137,8 +142,8 @@ void RemovalSums::refresh_row(std::size_t q, std::vector<std::uint32_t>* changed
   Point& point = points_[q];
   Pair* row = &pairs_[point.row_begin];
   const RowView view{&means_[q * width_], &deviations_[q * width_], point.weight_sum};
-  point.row_size = refresh_pairs(view, row, point.row_size, retained_.data(), values_.data(), column_change_.data(),
-                                 width_);
+  point.row_size =
+      refresh_pairs(view, row, point.row_size, retained_.data(), values_.data(), column_change_.data(), width_);
   assert(point.row_size == point.retained_count);
   if (point.row_size == 1) column_change_[row->column_entry] = pair_change(q, row->observation, row->weight);
   if (!changed) return;

@@ -51,9 +51,7 @@ class RemovalSums {
 
   // For tests: S_q and Z_q at evaluation point q.
   double weight_sum(std::size_t q) const { return points_[q].weight_sum; }
-  double value_sum(std::size_t q, std::size_t channel) const {
-    return value_sums_[q * width_ + channel];
-  }
+  double value_sum(std::size_t q, std::size_t channel) const { return value_sums_[q * width_ + channel]; }
 
  private:
   struct Pair {  // of a row; rows are compacted when they are passed through

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <toml++/toml.h>
 #include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <set>
 #include <sstream>
-#include <toml++/toml.h>
 
 namespace thin {
 namespace {
@@ -38,10 +38,14 @@ std::optional<OptionValue> list_of(const toml::array& array) {
 
 std::optional<OptionValue> option_value(const toml::node& node) {
   switch (node.type()) {
-    case toml::node_type::boolean: return OptionValue(**node.as_boolean());
-    case toml::node_type::integer: return OptionValue(**node.as_integer());
-    case toml::node_type::floating_point: return OptionValue(**node.as_floating_point());
-    case toml::node_type::string: return OptionValue(**node.as_string());
+    case toml::node_type::boolean:
+      return OptionValue(**node.as_boolean());
+    case toml::node_type::integer:
+      return OptionValue(**node.as_integer());
+    case toml::node_type::floating_point:
+      return OptionValue(**node.as_floating_point());
+    case toml::node_type::string:
+      return OptionValue(**node.as_string());
     case toml::node_type::array: {
       const toml::array& array = *node.as_array();
       if (array.empty() || array.is_homogeneous(toml::node_type::string)) return list_of<std::string>(array);
@@ -49,7 +53,8 @@ std::optional<OptionValue> option_value(const toml::node& node) {
       if (array.is_homogeneous(toml::node_type::boolean)) return std::nullopt;
       return list_of<double>(array);
     }
-    default: return std::nullopt;
+    default:
+      return std::nullopt;
   }
 }
 
@@ -95,9 +100,13 @@ Result<Configuration> Configuration::parse(const std::string& text, const std::s
   return Configuration(std::move(content));
 }
 
-const std::string& Configuration::name() const { return content_->name; }
+const std::string& Configuration::name() const {
+  return content_->name;
+}
 
-bool Configuration::has_section(const std::string& section) const { return content_->section(section) != nullptr; }
+bool Configuration::has_section(const std::string& section) const {
+  return content_->section(section) != nullptr;
+}
 
 std::optional<std::string> Configuration::peek_text(const std::string& section, const std::string& key) const {
   const toml::table* table = content_->section(section);
@@ -115,19 +124,22 @@ void Configuration::read_section(const std::string& section, OptionTable& option
       std::vector<std::string> known;
       for (const Option& each : options.options()) known.push_back(each.name);
       const auto meant = likely_meant(key, known);
-      content_->add_problem(
-          toml_key.source(),
-          fmt::format("unknown key \"{}\" in [{}]; {}", key, section,
-                      meant ? fmt::format("did you mean \"{}\"?", *meant) : fmt::format("known are {}", fmt::join(known, ", "))));
+      content_->add_problem(toml_key.source(),
+                            fmt::format("unknown key \"{}\" in [{}]; {}", key, section,
+                                        meant ? fmt::format("did you mean \"{}\"?", *meant)
+                                              : fmt::format("known are {}", fmt::join(known, ", "))));
       continue;
     }
     const auto value = option_value(node);
-    const auto problem = value ? option->assign(*value) : fmt::format("must be {}, not {}", option->type, kind_of(node));
+    const auto problem =
+        value ? option->assign(*value) : fmt::format("must be {}, not {}", option->type, kind_of(node));
     if (problem) content_->add_problem(node.source(), fmt::format("{}.{} {}", section, key, *problem));
   }
 }
 
-void Configuration::ignore_section(const std::string& section) { content_->known_sections.insert(section); }
+void Configuration::ignore_section(const std::string& section) {
+  content_->known_sections.insert(section);
+}
 
 void Configuration::add_problem(const std::string& section, const std::string& key, const std::string& problem) {
   const toml::table* table = content_->section(section);

@@ -24,7 +24,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // FLANN prunes with distances that it accumulates in its own order, and treats its bound as exclusive. Candidates are
 // gathered up to a bound wider by far more than that rounding, and judged by `distance_squared` alone.
-double widened(double bound) { return bound * (1 + 1e-9) + std::numeric_limits<double>::min(); }
+double widened(double bound) {
+  return bound * (1 + 1e-9) + std::numeric_limits<double>::min();
+}
 
 bool nearer(const Neighbour& a, const Neighbour& b) {
   return a.distance_squared != b.distance_squared ? a.distance_squared < b.distance_squared : a.index < b.index;
@@ -113,8 +115,12 @@ KdTree::~KdTree() = default;
 KdTree::KdTree(KdTree&&) noexcept = default;
 KdTree& KdTree::operator=(KdTree&&) noexcept = default;
 
-std::size_t KdTree::size() const { return index_->size; }
-int KdTree::dimension() const { return index_->dimension; }
+std::size_t KdTree::size() const {
+  return index_->size;
+}
+int KdTree::dimension() const {
+  return index_->dimension;
+}
 
 void KdTree::radius_search(std::span<const double> query, double radius, std::vector<Neighbour>& found) const {
   assert(static_cast<int>(query.size()) == index_->dimension);

@@ -12,13 +12,25 @@
 namespace thin {
 namespace {
 
-std::string quoted(const std::string& text) { return "\"" + text + "\""; }
+std::string quoted(const std::string& text) {
+  return "\"" + text + "\"";
+}
 
-std::string written(bool value) { return value ? "true" : "false"; }
-std::string written(std::int64_t value) { return std::to_string(value); }
-std::string written(int value) { return std::to_string(value); }
-std::string written(double value) { return fmt::format("{}", value); }
-std::string written(const std::string& value) { return quoted(value); }
+std::string written(bool value) {
+  return value ? "true" : "false";
+}
+std::string written(std::int64_t value) {
+  return std::to_string(value);
+}
+std::string written(int value) {
+  return std::to_string(value);
+}
+std::string written(double value) {
+  return fmt::format("{}", value);
+}
+std::string written(const std::string& value) {
+  return quoted(value);
+}
 
 template <class T>
 std::string written(const std::vector<T>& values) {
@@ -35,9 +47,12 @@ std::string written(const std::optional<T>& value) {
 std::optional<std::string> outside_limits(double value, const std::string& text, const OptionFacts& facts) {
   const std::string unit = facts.unit.empty() ? "" : " " + facts.unit;
   if (!std::isfinite(value)) return fmt::format("must be a finite number, not {}", text);
-  if (facts.above && !(value > *facts.above)) return fmt::format("must be greater than {}{}, not {}", *facts.above, unit, text);
-  if (facts.minimum && value < *facts.minimum) return fmt::format("must be at least {}{}, not {}", *facts.minimum, unit, text);
-  if (facts.maximum && value > *facts.maximum) return fmt::format("must be at most {}{}, not {}", *facts.maximum, unit, text);
+  if (facts.above && !(value > *facts.above))
+    return fmt::format("must be greater than {}{}, not {}", *facts.above, unit, text);
+  if (facts.minimum && value < *facts.minimum)
+    return fmt::format("must be at least {}{}, not {}", *facts.minimum, unit, text);
+  if (facts.maximum && value > *facts.maximum)
+    return fmt::format("must be at most {}{}, not {}", *facts.maximum, unit, text);
   return std::nullopt;
 }
 
@@ -48,8 +63,8 @@ std::optional<std::string> not_a_choice(const std::string& value, const OptionFa
 }
 
 std::string kind_of(const OptionValue& value) {
-  static const char* const kinds[] = {"a boolean", "an integer", "a number", "text", "a list of texts",
-                                      "a list of integers", "a list of numbers"};
+  static const char* const kinds[] = {"a boolean",       "an integer",         "a number",         "text",
+                                      "a list of texts", "a list of integers", "a list of numbers"};
   return kinds[value.index()];
 }
 
@@ -115,9 +130,12 @@ Problem convert(const OptionValue& value, const OptionFacts& facts, std::optiona
 
 // The elements of any list; nothing where the value is not a list.
 std::optional<std::vector<OptionValue>> elements_of(const OptionValue& value) {
-  if (const auto* texts = std::get_if<std::vector<std::string>>(&value)) return std::vector<OptionValue>(texts->begin(), texts->end());
-  if (const auto* integers = std::get_if<std::vector<std::int64_t>>(&value)) return std::vector<OptionValue>(integers->begin(), integers->end());
-  if (const auto* numbers = std::get_if<std::vector<double>>(&value)) return std::vector<OptionValue>(numbers->begin(), numbers->end());
+  if (const auto* texts = std::get_if<std::vector<std::string>>(&value))
+    return std::vector<OptionValue>(texts->begin(), texts->end());
+  if (const auto* integers = std::get_if<std::vector<std::int64_t>>(&value))
+    return std::vector<OptionValue>(integers->begin(), integers->end());
+  if (const auto* numbers = std::get_if<std::vector<double>>(&value))
+    return std::vector<OptionValue>(numbers->begin(), numbers->end());
   return std::nullopt;
 }
 

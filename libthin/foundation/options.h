@@ -6,7 +6,8 @@
 //   struct StepwiseOptions {
 //     int step = 3;
 //     void declare(OptionTable& table) {
-//       table.add("step", step, {.unit = "lines and fields of view", .minimum = 1, .explanation = "keep every step-th"});
+//       table.add("step", step, {.unit = "lines and fields of view", .minimum = 1, .explanation = "keep every
+//       step-th"});
 //     }
 //   };
 //
@@ -61,8 +62,8 @@ class OptionTable {
 
   // An enumeration, written in the configuration by the names given here.
   template <class Enumeration>
-  void add_choice(std::string name, Enumeration& field,
-                  const std::vector<std::pair<std::string, Enumeration>>& names, OptionFacts facts) {
+  void add_choice(std::string name, Enumeration& field, const std::vector<std::pair<std::string, Enumeration>>& names,
+                  OptionFacts facts) {
     for (const auto& entry : names) facts.choices.push_back(entry.first);
     add_text_option(
         std::move(name), std::move(facts),

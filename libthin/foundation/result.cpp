@@ -14,8 +14,10 @@ ErrorKind kind_of_errno(int error_number) {
     case ENFILE:
     case ENOMEM:
     case EAGAIN:
-    case EINTR: return ErrorKind::temporary;
-    default: return ErrorKind::internal;
+    case EINTR:
+      return ErrorKind::temporary;
+    default:
+      return ErrorKind::internal;
   }
 }
 

@@ -28,11 +28,15 @@ struct Error {
 // 75 temporary.
 constexpr int exit_code(ErrorKind kind) {
   switch (kind) {
-    case ErrorKind::configuration: return 2;
-    case ErrorKind::input: return 3;
+    case ErrorKind::configuration:
+      return 2;
+    case ErrorKind::input:
+      return 3;
     case ErrorKind::incomplete:
-    case ErrorKind::temporary: return 75;
-    case ErrorKind::internal: return 1;
+    case ErrorKind::temporary:
+      return 75;
+    case ErrorKind::internal:
+      return 1;
   }
   return 1;
 }

@@ -10,7 +10,8 @@
 namespace thin {
 namespace {
 
-// Bands of equal height from pole to pole; in each, so many boxes that they come as near to squares as whole numbers do.
+// Bands of equal height from pole to pole; in each, so many boxes that they come as near to squares as whole numbers
+// do.
 class BoxMesh {
  public:
   explicit BoxMesh(double mesh_km)

@@ -41,8 +41,8 @@ Retained remove_greedily(RemovalSums& sums, std::size_t retain_count, Update upd
   std::vector<std::uint32_t> changed;
   std::vector<std::uint32_t> valid_at(n, 0);
   while (queue.size() > retain_count) {
-    const std::uint32_t least = update == Update::full ? take_least_full(sums, queue, changed)
-                                                       : take_least_lazy(sums, queue, valid_at);
+    const std::uint32_t least =
+        update == Update::full ? take_least_full(sums, queue, changed) : take_least_lazy(sums, queue, valid_at);
     if (removed) removed->push_back(least);
   }
 

@@ -13,9 +13,10 @@ void GridEea::declare_options(OptionTable& table) {
              .minimum = 0,
              .maximum = kMaximumGmeLevel,
              .explanation = "of the GME grid that the error is taken on: 10*4^level + 2 vertices, 6 is about 112 km"});
-  table.add_choice("update", update_, std::vector<std::pair<std::string, Update>>{{"full", Update::full}, {"lazy", Update::lazy}},
-                   {.explanation = "full: each step is the exact greedy choice; lazy: increments are recomputed only at "
-                                   "the front of the queue"});
+  table.add_choice(
+      "update", update_, std::vector<std::pair<std::string, Update>>{{"full", Update::full}, {"lazy", Update::lazy}},
+      {.explanation = "full: each step is the exact greedy choice; lazy: increments are recomputed only at "
+                      "the front of the queue"});
 }
 
 Result<Retained> GridEea::thin(const ObservationSet& observations) const {

@@ -6,8 +6,8 @@
 
 namespace thin {
 
-// Estimation error analysis on a regular grid (thesis 6.3.3): greedy removal, the error taken at the vertices of the GME
-// grid that have an observation within 3 bandwidths. With update = "full" every step is the exact greedy choice.
+// Estimation error analysis on a regular grid (thesis 6.3.3): greedy removal, the error taken at the vertices of the
+// GME grid that have an observation within 3 bandwidths. With update = "full" every step is the exact greedy choice.
 // Values should be innovations, or anomalies: where nothing is retained the estimate is 0.
 class GridEea : public ThinningMethod {
  public:

@@ -25,8 +25,8 @@ std::span<const MethodEntry> thinning_methods() {
                   "Purser et al. 2000; box thinning as centres use it", make<Box>},
       MethodEntry{"grid_eea", "greedy removal of what the Gaussian estimate on the GME grid misses least",
                   "estimation error analysis on a regular grid: thesis 6.3.3, eq. 6.10-6.14", make<GridEea>},
-      MethodEntry{"stepwise", "every s-th field of view of every s-th scan line",
-                  "the reference of thesis 6.5", make<Stepwise>},
+      MethodEntry{"stepwise", "every s-th field of view of every s-th scan line", "the reference of thesis 6.5",
+                  make<Stepwise>},
   };
   return entries;
 }

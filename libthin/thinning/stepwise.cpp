@@ -5,8 +5,9 @@
 namespace thin {
 
 void Stepwise::declare_options(OptionTable& table) {
-  table.add("step", step_,
-            {.minimum = 1, .maximum = 1000, .explanation = "keep every step-th field of view of every step-th scan line"});
+  table.add(
+      "step", step_,
+      {.minimum = 1, .maximum = 1000, .explanation = "keep every step-th field of view of every step-th scan line"});
   table.add("line_offset", line_offset_,
             {.unit = "scan lines", .minimum = 0, .explanation = "keep the lines whose number is this modulo step"});
   table.add("field_of_view_offset", field_of_view_offset_,
@@ -16,7 +17,9 @@ void Stepwise::declare_options(OptionTable& table) {
 }
 
 std::optional<ThinningMethod::Conflict> Stepwise::conflict() const {
-  const auto must_be_less = [&](int offset) { return fmt::format("must be less than step = {}, not {}", step_, offset); };
+  const auto must_be_less = [&](int offset) {
+    return fmt::format("must be less than step = {}, not {}", step_, offset);
+  };
   if (line_offset_ >= step_) return Conflict{"line_offset", must_be_less(line_offset_)};
   if (field_of_view_offset_ >= step_) return Conflict{"field_of_view_offset", must_be_less(field_of_view_offset_)};
   return std::nullopt;

@@ -53,8 +53,7 @@ void remove_all_and_compare(const ObservationSet& set, const std::vector<Vector3
         }
       }
       ASSERT_NEAR(sums.weight_sum(q), weight_sum, 1e-9 * weight_sum);
-      for (std::size_t c = 0; c < channels; ++c)
-        ASSERT_NEAR(sums.value_sum(q, c), value_sum[c], 1e-9 * absolute_sum);
+      for (std::size_t c = 0; c < channels; ++c) ASSERT_NEAR(sums.value_sum(q, c), value_sum[c], 1e-9 * absolute_sum);
     }
     const std::vector<double> increments = oracle.increments(retained);
     const double error = oracle.error_sum(retained);

@@ -26,7 +26,8 @@ struct Sample {
     table.add("limit", limit, {.unit = "K", .minimum = 0});
     table.add("channels", channels, {.minimum = 1, .maximum = 15});
     table.add("factors", factors, {});
-    table.add_choice("mode", mode, std::vector<std::pair<std::string, Mode>>{{"fast", Mode::fast}, {"careful", Mode::careful}}, {});
+    table.add_choice("mode", mode,
+                     std::vector<std::pair<std::string, Mode>>{{"fast", Mode::fast}, {"careful", Mode::careful}}, {});
   }
   Sample(const Sample&) = delete;
 };
@@ -47,10 +48,11 @@ std::string problems(const std::string& text) {
 
 TEST(Configuration, StoresWhatIsThereAndLeavesTheRest) {
   Sample sample;
-  EXPECT_EQ(problems("[sample]\nflag = true\ncount = 5\nsize_km = 100\nlimit = 0.5\nchannels = [5, 6]\nfactors = [1, 2.5]\n"
-                     "mode = 'careful'\n",
-                     sample),
-            "");
+  EXPECT_EQ(
+      problems("[sample]\nflag = true\ncount = 5\nsize_km = 100\nlimit = 0.5\nchannels = [5, 6]\nfactors = [1, 2.5]\n"
+               "mode = 'careful'\n",
+               sample),
+      "");
   EXPECT_TRUE(sample.flag);
   EXPECT_EQ(sample.count, 5);
   EXPECT_EQ(sample.size_km, 100);
@@ -61,10 +63,13 @@ TEST(Configuration, StoresWhatIsThereAndLeavesTheRest) {
   EXPECT_EQ(sample.mode, Mode::careful);
 }
 
-TEST(Configuration, AnEmptyFileIsAllDefaults) { EXPECT_EQ(problems(""), ""); }
+TEST(Configuration, AnEmptyFileIsAllDefaults) {
+  EXPECT_EQ(problems(""), "");
+}
 
 TEST(Configuration, NamesFileLineAndWhatWasMeant) {
-  EXPECT_EQ(problems("[sample]\n\ncuont = 5\n"), "c.toml:3:1: unknown key \"cuont\" in [sample]; did you mean \"count\"?");
+  EXPECT_EQ(problems("[sample]\n\ncuont = 5\n"),
+            "c.toml:3:1: unknown key \"cuont\" in [sample]; did you mean \"count\"?");
   EXPECT_EQ(problems("[smaple]\n"), "c.toml:1:2: unknown section [smaple]; did you mean [sample]?");
   EXPECT_EQ(problems("[sample]\nxyzzy_plugh = 1\n").substr(0, 67),
             "c.toml:2:1: unknown key \"xyzzy_plugh\" in [sample]; known are flag, ");
@@ -74,8 +79,10 @@ TEST(Configuration, NamesTheValueAndTheLimit) {
   EXPECT_EQ(problems("[sample]\ncount = 10\n"), "c.toml:2:9: sample.count must be at most 9, not 10");
   EXPECT_EQ(problems("[sample]\nsize_km = 0\n"), "c.toml:2:11: sample.size_km must be greater than 0 km, not 0");
   EXPECT_EQ(problems("[sample]\ncount = 'five'\n"), "c.toml:2:9: sample.count must be an integer, not text");
-  EXPECT_EQ(problems("[sample]\nmode = 'slow'\n"), "c.toml:2:8: sample.mode must be one of fast, careful, not \"slow\"");
-  EXPECT_EQ(problems("[sample]\nchannels = [5, 16]\n"), "c.toml:2:12: sample.channels element 2 must be at most 15, not 16");
+  EXPECT_EQ(problems("[sample]\nmode = 'slow'\n"),
+            "c.toml:2:8: sample.mode must be one of fast, careful, not \"slow\"");
+  EXPECT_EQ(problems("[sample]\nchannels = [5, 16]\n"),
+            "c.toml:2:12: sample.channels element 2 must be at most 15, not 16");
   EXPECT_EQ(problems("[sample]\nsize_km = nan\n"), "c.toml:2:11: sample.size_km must be a finite number, not nan");
 }
 

@@ -19,7 +19,8 @@ double distance_squared(std::span<const double> a, std::span<const double> b) {
 std::vector<Neighbour> all_by_index(std::span<const double> points, std::span<const double> query) {
   std::vector<Neighbour> all;
   for (std::size_t i = 0; i * query.size() < points.size(); ++i)
-    all.push_back({static_cast<std::uint32_t>(i), distance_squared(query, points.subspan(i * query.size(), query.size()))});
+    all.push_back(
+        {static_cast<std::uint32_t>(i), distance_squared(query, points.subspan(i * query.size(), query.size()))});
   return all;
 }
 

@@ -10,7 +10,8 @@ namespace thin {
 namespace {
 
 // Mean squared deviation of the points along a direction, from its definition.
-double variance_along(std::span<const double> points, std::span<const double> centroid, std::span<const double> direction) {
+double variance_along(std::span<const double> points, std::span<const double> centroid,
+                      std::span<const double> direction) {
   const std::size_t dimension = direction.size();
   double sum = 0;
   for (std::size_t row = 0; row < points.size(); row += dimension) {

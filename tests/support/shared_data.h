@@ -18,6 +18,6 @@ inline std::filesystem::path shared_data() {
 
 }  // namespace thin::test
 
-#define THIN_REQUIRE_SHARED_DATA()                                                                         \
-  if (!std::filesystem::exists(thin::test::shared_data()))                                                 \
+#define THIN_REQUIRE_SHARED_DATA()                         \
+  if (!std::filesystem::exists(thin::test::shared_data())) \
   GTEST_SKIP() << "no shared data at " << thin::test::shared_data() << "; set THIN_SHARED_DATA to its path"

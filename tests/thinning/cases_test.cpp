@@ -48,7 +48,8 @@ struct Case {
 
 TEST(Cases, RetainWhatTheySay) {
   std::size_t count = 0;
-  for (const auto& file : std::filesystem::directory_iterator(std::filesystem::path(__FILE__).parent_path() / "../cases")) {
+  for (const auto& file :
+       std::filesystem::directory_iterator(std::filesystem::path(__FILE__).parent_path() / "../cases")) {
     SCOPED_TRACE(file.path().filename().string());
     ++count;
     Result<Configuration> configuration = Configuration::read(file.path());

@@ -20,7 +20,8 @@ std::vector<std::uint32_t> removal_order(const ObservationSet& set, const std::v
 }
 
 // Each step of full updating takes the true minimum: every increment recomputed from the definition.
-void expect_every_step_is_the_minimum(const ObservationSet& set, const std::vector<Vector3>& points, double bandwidth_km) {
+void expect_every_step_is_the_minimum(const ObservationSet& set, const std::vector<Vector3>& points,
+                                      double bandwidth_km) {
   const test::EstimationOracle oracle{points, set.position_km, set.values, set.channel_count(), bandwidth_km};
   std::vector<bool> retained(set.size(), true);
   for (const std::uint32_t chosen : removal_order(set, points, bandwidth_km, Update::full)) {

@@ -1,0 +1,90 @@
+// thin ingest: one file, decoded in a process of its own, staged for `thin window`.
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "libthin/formats/atomic_file.h"
+#include "libthin/formats/staged_file.h"
+#include "libthin/observations/platforms.h"
+#include "libthin/tools/commands.h"
+#include "libthin/tools/outcome.h"
+#include "libthin/tools/settings.h"
+
+namespace thin {
+namespace {
+
+struct Arguments {
+  std::string configuration, input, output;
+};
+
+OutcomeJson staged_json(const ReadObservations& contents) {
+  const ObservationSet& set = contents.observations;
+  const auto [first, last] = std::minmax_element(set.time_ms.begin(), set.time_ms.end());
+  std::map<std::int32_t, std::size_t> platforms;
+  for (const std::int32_t platform : set.platform) ++platforms[platform];
+  OutcomeJson json = {{"outcome", "staged"},
+                      {"layout", contents.layout},
+                      {"instrument", contents.instrument},
+                      {"observations", set.size()},
+                      {"time_begin_ms", *first},
+                      {"time_end_ms", *last},
+                      {"platforms", OutcomeJson::array()},
+                      {"skipped", OutcomeJson::array()}};
+  for (const auto& [platform, count] : platforms)
+    json["platforms"].push_back({{"number", platform}, {"name", platform_name(platform)}, {"observations", count}});
+  for (const SkippedPart& part : contents.skipped)
+    json["skipped"].push_back({{"message", part.message}, {"offset", part.offset}, {"reason", part.reason}});
+  return json;
+}
+
+// Seconds since `began`, which becomes now.
+double lap(std::chrono::steady_clock::time_point& began) {
+  const auto now = std::chrono::steady_clock::now();
+  const double seconds = std::chrono::duration<double>(now - began).count();
+  began = now;
+  return seconds;
+}
+
+int ingest(const Arguments& arguments) {
+  if (!arguments.configuration.empty())
+    if (const Result<Settings> settings = read_settings(arguments.configuration); !settings)
+      return fail(settings.error());
+
+  auto began = std::chrono::steady_clock::now();
+  StepSeconds seconds;
+  const Result<ReadObservations> contents = read_observations(arguments.input);
+  if (!contents) return fail(contents.error());
+  if (contents->observations.size() == 0)
+    return fail({ErrorKind::input, arguments.input + " holds no observation that can be used"});
+  seconds.emplace_back("read", lap(began));
+
+  const std::string temporary = arguments.output + ".tmp";
+  Result<void> staged = write_staged(temporary, *contents);
+  if (staged) staged = publish_file(temporary, arguments.output);
+  if (!staged) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    return fail(staged.error());
+  }
+  seconds.emplace_back("stage", lap(began));
+
+  OutcomeJson outcome = staged_json(*contents);
+  outcome["seconds"] = seconds_json(seconds);
+  print_outcome(outcome);
+  return 0;
+}
+
+}  // namespace
+
+void add_ingest_command(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand("ingest", "decode one file and stage it (a step of thind)");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("-c,--config", arguments->configuration, "configuration file (TOML)");
+  command->add_option("--input", arguments->input, "file of soundings")->required();
+  command->add_option("--output", arguments->output, "staged file to write")->required();
+  command->callback([arguments, &action] { action = [arguments] { return ingest(*arguments); }; });
+}
+
+}  // namespace thin

@@ -1,0 +1,69 @@
+#include "libthin/tools/settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace thin {
+namespace {
+
+// Sections of the daemon, which reads and checks them itself.
+constexpr const char* kDaemonSections[] = {"daemon", "window"};
+
+void choose_method(Configuration& configuration, Settings& settings) {
+  settings.method_name = configuration.peek_text("thinning", "method").value_or(settings.method_name);
+  if (const MethodEntry* entry = find_thinning_method(settings.method_name)) {
+    settings.method = entry->make();
+    return;
+  }
+  std::vector<std::string> known;
+  for (const MethodEntry& entry : thinning_methods()) known.push_back(entry.name);
+  const auto meant = likely_meant(settings.method_name, known);
+  configuration.add_problem("thinning", "method",
+                            fmt::format("= \"{}\" is not a method; {}", settings.method_name,
+                                        meant ? fmt::format("did you mean \"{}\"?", *meant)
+                                              : fmt::format("known are {}", fmt::join(known, ", "))));
+}
+
+void keep_resolved(const std::string& section, const OptionTable& table, Settings& settings) {
+  for (const Option& option : table.options())
+    settings.resolved.emplace_back(section + "." + option.name, option.current_value());
+}
+
+}  // namespace
+
+Result<Settings> read_settings(const std::string& path) {
+  Result<Configuration> configuration = Configuration::read(path);
+  if (!configuration) return configuration.error();
+  return read_settings(std::move(*configuration));
+}
+
+Result<Settings> read_settings(Configuration configuration) {
+  Settings settings;
+  OptionTable thinning, preparation, output, run;
+  choose_method(configuration, settings);
+  thinning.add("method", settings.method_name, {});
+  if (settings.method) {
+    settings.method->declare_options(thinning);
+    configuration.read_section("thinning", thinning);
+    if (const auto conflict = settings.method->conflict())
+      configuration.add_problem("thinning", conflict->key, conflict->problem);
+  } else {
+    configuration.ignore_section("thinning");
+  }
+  settings.preparation.declare(preparation);
+  configuration.read_section("preparation", preparation);
+  settings.output.declare(output);
+  configuration.read_section("output", output);
+  run.add("threads", settings.threads,
+          {.minimum = 0, .maximum = 4096, .explanation = "for all parallel work; 0: as many as there are cores"});
+  configuration.read_section("run", run);
+  for (const char* section : kDaemonSections) configuration.ignore_section(section);
+  if (Result<void> good = configuration.finish(); !good) return good.error();
+  // Not [run]: nothing in a result depends on it.
+  keep_resolved("thinning", thinning, settings);
+  keep_resolved("preparation", preparation, settings);
+  keep_resolved("output", output, settings);
+  return settings;
+}
+
+}  // namespace thin

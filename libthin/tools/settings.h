@@ -1,0 +1,30 @@
+#pragma once
+
+// One TOML file tells the whole way of a window. The daemon's own sections stand in the same file and are left to it.
+
+#include <memory>
+#include <string>
+
+#include "libthin/formats/observation_file.h"
+#include "libthin/foundation/configuration.h"
+#include "libthin/preparation/preparation.h"
+#include "libthin/thinning/thinning_method.h"
+
+namespace thin {
+
+struct Settings {
+  std::string method_name = "grid_eea";
+  std::unique_ptr<ThinningMethod> method;
+  PreparationOptions preparation;
+  OutputOptions output;
+  int threads = 0;
+
+  // Every option with the value in force, as "section.name", for the report.
+  std::vector<std::pair<std::string, std::string>> resolved;
+};
+
+// Error: configuration, with a line for every problem in the file.
+Result<Settings> read_settings(const std::string& path);
+Result<Settings> read_settings(Configuration configuration);
+
+}  // namespace thin

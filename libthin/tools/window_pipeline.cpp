@@ -1,0 +1,143 @@
+#include "libthin/tools/window_pipeline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+
+#include "libthin/formats/atomic_file.h"
+#include "libthin/tools/report.h"
+
+namespace thin {
+namespace {
+
+// Of the filter that the report's error is taken with, for methods that have none of their own.
+constexpr double kReportBandwidthKm = 100;
+
+// Wall-clock seconds of the steps, one after the other.
+class StepClock {
+ public:
+  explicit StepClock(StepSeconds& seconds) : seconds_(seconds) {}
+  void finish(const std::string& step) {
+    const auto now = std::chrono::steady_clock::now();
+    seconds_.emplace_back(step, std::chrono::duration<double>(now - began_).count());
+    began_ = now;
+  }
+
+ private:
+  StepSeconds& seconds_;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+};
+
+// All observations in one set; source.file is the place of the file in `files`.
+ObservationSet merged(const std::vector<WindowFile>& files) {
+  ObservationSet all;
+  std::size_t total = 0;
+  for (const WindowFile& file : files) total += file.contents.observations.size();
+  if (files.empty()) return all;
+  all.channels = files.front().contents.observations.channels;
+  all.value_kind = files.front().contents.observations.value_kind;
+  all.reserve(total);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::size_t first = all.size();
+    all.append(files[i].contents.observations);
+    for (std::size_t j = first; j < all.size(); ++j) all.source[j].file = static_cast<std::uint32_t>(i);
+  }
+  return all;
+}
+
+Error nothing_left(const Prepared& prepared, const ObservationSet& all) {
+  std::size_t screened = 0;
+  for (const auto& [platform, tally] : prepared.platforms) screened += tally.observations - tally.prepared;
+  return {ErrorKind::input,
+          fmt::format("nothing is left to thin: of {} observations {} lie outside the window and {} were "
+                      "screened out; see [preparation] for the channels and limits",
+                      all.size(), prepared.outside_window, screened)};
+}
+
+// Messages of other kinds leave with the window that holds the file's earliest observation, so that a file which spans
+// several windows hands them on once.
+bool carries_other_messages(const ObservationSet& observations, const TimeWindow& window) {
+  const auto earliest = std::min_element(observations.time_ms.begin(), observations.time_ms.end());
+  return earliest != observations.time_ms.end() && window.holds(*earliest);
+}
+
+Result<FileOutcome> write_file(const WindowFile& file, const std::vector<SourceReference>& retained,
+                               const TimeWindow& window, OutputOptions options, const std::string& directory) {
+  FileOutcome outcome;
+  outcome.name = file.name;
+  outcome.retained = retained.size();
+  outcome.skipped = file.contents.skipped;
+  const ObservationSet& observations = file.contents.observations;
+  outcome.observations =
+      static_cast<std::size_t>(std::count_if(observations.time_ms.begin(), observations.time_ms.end(),
+                                             [&](std::int64_t time_ms) { return window.holds(time_ms); }));
+  if (retained.empty()) return outcome;
+  if (!carries_other_messages(observations, window)) options.other_messages = OutputOptions::OtherMessages::drop;
+
+  const std::string path = directory + "/" + file.name;
+  const std::string temporary = directory + "/." + file.name + ".tmp";
+  Result<ExtractionSummary> summary = extract_observations(file.original_path, retained, temporary, options);
+  if (!summary) return summary.error();
+  outcome.output = *summary;
+  if (Result<void> placed = publish_file(temporary, path); !placed) return placed.error();
+  return outcome;
+}
+
+Result<void> write_outputs(const std::vector<WindowFile>& files, const Settings& settings, const std::string& directory,
+                           WindowOutcome& outcome) {
+  std::vector<std::vector<SourceReference>> retained(files.size());
+  for (const std::uint32_t i : outcome.retained) {
+    const SourceReference& source = outcome.prepared.observations.source[i];
+    retained[source.file].push_back(source);
+  }
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    Result<FileOutcome> written = write_file(files[i], retained[i], outcome.window, settings.output, directory);
+    if (!written) return written.error();
+    outcome.files.push_back(std::move(*written));
+  }
+  return write_text_atomically(directory + "/" + kReportName, report_json(outcome, settings));
+}
+
+}  // namespace
+
+Result<WindowOutcome> thin_window(std::vector<WindowFile> files, std::vector<RefusedFile> refused,
+                                  const TimeWindow& window, const Settings& settings,
+                                  const std::string& output_directory) {
+  const auto by_name = [](const auto& a, const auto& b) { return a.name < b.name; };
+  std::sort(files.begin(), files.end(), by_name);
+  std::sort(refused.begin(), refused.end(), by_name);
+
+  WindowOutcome outcome;
+  outcome.window = window;
+  outcome.refused = std::move(refused);
+  StepClock clock(outcome.seconds);
+
+  const ObservationSet all = merged(files);
+  Result<Prepared> prepared = prepare(all, window, settings.preparation);
+  if (!prepared) return prepared.error();
+  outcome.prepared = std::move(*prepared);
+  const ObservationSet& observations = outcome.prepared.observations;
+  if (observations.size() == 0) return nothing_left(outcome.prepared, all);
+  clock.finish("prepare");
+
+  Result<Retained> retained = settings.method->thin(observations);
+  if (!retained) return retained.error();
+  outcome.retained = std::move(*retained);
+  for (const std::uint32_t i : outcome.retained) ++outcome.retained_by_platform[observations.platform[i]];
+  clock.finish("thin");
+
+  Result<ThinnedError> error =
+      thinned_error(observations, outcome.retained, settings.method->bandwidth_km().value_or(kReportBandwidthKm));
+  if (!error) return error.error();
+  outcome.error = std::move(*error);
+  clock.finish("evaluate");
+
+  if (Result<void> written = write_outputs(files, settings, output_directory, outcome); !written)
+    return written.error();
+  clock.finish("write");
+  return outcome;
+}
+
+}  // namespace thin

@@ -1,0 +1,60 @@
+#pragma once
+
+// The way of one window from decoded files to thinned files, the same for `thin run` and for the daemon's worker:
+// merge, window, screening, first guess, thinning, report, extraction from the original files.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "libthin/formats/observation_file.h"
+#include "libthin/preparation/preparation.h"
+#include "libthin/tools/settings.h"
+#include "libthin/tools/thinned_error.h"
+
+namespace thin {
+
+// Wall-clock seconds by step, in the order of the steps.
+using StepSeconds = std::vector<std::pair<std::string, double>>;
+
+struct WindowFile {
+  std::string name;           // of the output, in the output directory; different for each file
+  std::string original_path;  // what the retained observations are extracted from
+  ReadObservations contents;
+};
+
+struct RefusedFile {
+  std::string name;
+  std::string reason;
+};
+
+struct FileOutcome {
+  std::string name;
+  std::size_t observations = 0;  // in the window
+  std::size_t retained = 0;
+  ExtractionSummary output;  // messages = 0: no file was written
+  std::vector<SkippedPart> skipped;
+};
+
+struct WindowOutcome {
+  TimeWindow window;
+  std::vector<FileOutcome> files;    // by name
+  std::vector<RefusedFile> refused;  // by name
+  Prepared prepared;
+  Retained retained;  // indices into prepared.observations
+  std::map<std::int32_t, std::size_t> retained_by_platform;
+  ThinnedError error;
+  StepSeconds seconds;  // never part of the report
+};
+
+// Writes <output_directory>/<name> for each file of which something is retained, then report.json; each whole or not
+// at all. The outputs depend on the files, the window and the settings alone: not on the order of the files.
+// Errors: input, where nothing is left to thin; those of prepare(), the method and extract_observations().
+Result<WindowOutcome> thin_window(std::vector<WindowFile> files, std::vector<RefusedFile> refused,
+                                  const TimeWindow& window, const Settings& settings,
+                                  const std::string& output_directory);
+
+// The directory's report of a window: its name.
+inline constexpr const char* kReportName = "report.json";
+
+}  // namespace thin
