@@ -23,10 +23,10 @@ constexpr double kFrontHalfLengthKm = 1500;
 constexpr double kFrontReachKm = 600;
 
 // Heights of the independent patterns, and of the channels' weighting functions, in scale heights ln(1000 hPa / p).
-constexpr double kPatternHeights[] = {0, 0.7, 1.5, 2.5, 4, 6};
+constexpr double kPatternHeights[] = {0, 0.8, 1.7, 2.7, 3.8, 5.2};
 constexpr std::size_t kPatterns = std::size(kPatternHeights);
 constexpr ChannelValues kChannelHeight = {0, 0, 0.05, 0.1, 0.4, 0.9, 1.4, 1.8, 2.4, 3.0, 3.7, 4.4, 5.3, 6.0, 0.1};
-constexpr double kHeightOverlap = 0.6;
+constexpr double kHeightOverlap = 0.8;
 
 constexpr ChannelValues kWaveDeviationK = {5, 4, 3, 2, 1.8, 1.6, 1.4, 1.3, 1.2, 1.2, 1.4, 1.8, 2, 2.5, 5};
 // Half the jump across the strongest front. Above the tropopause (channel 8) the contrast turns round.

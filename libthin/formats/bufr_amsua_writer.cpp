@@ -4,15 +4,11 @@
 #include <fmt/format.h>
 
 #include <cassert>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <memory>
-#include <numeric>
 #include <vector>
 
+#include "libthin/formats/atomic_file.h"
 #include "libthin/observations/time.h"
 
 namespace thin {
@@ -180,21 +176,6 @@ std::string in_gts_envelope(const std::string& message, std::uint32_t sequence_n
   return fmt::format("{:08}00", bulletin.size()) + bulletin;
 }
 
-Result<void> write_whole_file(const std::filesystem::path& path, const std::string& bytes) {
-  const std::filesystem::path hidden = path.parent_path() / ("." + path.filename().string());
-  errno = 0;
-  std::ofstream file(hidden, std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) {
-    const int error_number = errno;
-    std::remove(hidden.c_str());
-    return system_error("write", hidden.string(), error_number);
-  }
-  if (std::rename(hidden.c_str(), path.c_str()) != 0) return system_error("create", path.string(), errno);
-  return {};
-}
-
 // How many soundings from the front belong to the next message.
 std::size_t next_message_size(std::span<const AmsuaSounding> soundings, int lines) {
   constexpr std::size_t kMaximum = 65535;
@@ -231,7 +212,7 @@ Result<AmsuaFileSummary> write_amsua_file(const std::string& path, std::int32_t 
     soundings = soundings.subspan(part.size());
   }
   summary.bytes = file.size();
-  if (auto written = write_whole_file(path, file); !written) return written.error();
+  if (auto written = write_text_atomically(path, file); !written) return written.error();
   return summary;
 }
 

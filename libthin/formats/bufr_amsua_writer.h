@@ -39,9 +39,9 @@ struct AmsuaFileSummary {
 // REQUIRES: 1 to 65535 soundings, each within the limits above
 Result<std::string> encode_amsua_message(std::int32_t platform, std::span<const AmsuaSounding> soundings);
 
-// All soundings as one file, in the order given. The file appears whole: it is written under the same name with a dot
-// in front, then renamed. The same soundings give the same bytes. Errors: temporary or internal, where the file system
-// fails.
+// All soundings as one file, in the order given, which appears whole or not at all (atomic_file.h). The same soundings
+// give the same bytes.
+// Errors: temporary or internal, where the file system fails.
 Result<AmsuaFileSummary> write_amsua_file(const std::string& path, std::int32_t platform,
                                           std::span<const AmsuaSounding> soundings, const AmsuaWriterOptions& options);
 
