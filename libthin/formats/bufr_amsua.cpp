@@ -139,12 +139,20 @@ std::int32_t number_or_unknown(double value) {
   return std::isnan(value) ? kUnknownNumber : static_cast<std::int32_t>(value);
 }
 
+// BUFR holds 90 degrees as 9,000,000 hundred-thousandths, which decode to 90.00000000000001: a value that is over the
+// edge by a rounding is on the edge. Anything farther out is no value.
+double within(double value, double lowest, double highest) {
+  constexpr double kRounding = 1e-9;
+  if (!(value >= lowest - kRounding && value <= highest + kRounding)) return kMissing;
+  return std::clamp(value, lowest, highest);
+}
+
 // Position and time, or nothing where one of them is missing or impossible.
 std::optional<ObservationSet::Entry> entry_of(const Places& places, std::size_t subset) {
-  const double latitude = places.latitude[subset];
-  const double longitude = places.longitude[subset];
+  const double latitude = within(places.latitude[subset], -90, 90);
+  const double longitude = within(places.longitude[subset], -180, 360);
   const std::optional<std::int64_t> time_ms = time_of(places.clock, subset);
-  if (!(std::abs(latitude) <= 90 && longitude >= -180 && longitude <= 360) || !time_ms) return std::nullopt;
+  if (std::isnan(latitude) || std::isnan(longitude) || !time_ms) return std::nullopt;
   return ObservationSet::Entry{.latitude_deg = latitude,
                                .longitude_deg = longitude,
                                .time_ms = *time_ms,

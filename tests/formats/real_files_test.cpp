@@ -1,0 +1,135 @@
+// Files from weather centres, read in place. Without them these tests are skipped.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+
+#include "libthin/formats/observation_file.h"
+#include "libthin/observations/time.h"
+#include "tests/support/bufr_oracle.h"
+#include "tests/support/extraction_checks.h"
+#include "tests/support/shared_data.h"
+#include "tests/support/soundings_equal.h"
+
+namespace thin {
+namespace {
+
+std::string real_file(const std::string& name) {
+  return (test::shared_data() / "observations" / name).string();
+}
+
+struct AmsuAFile {
+  const char* name;
+  std::size_t observations;
+  std::uint32_t messages;
+  int platform;
+  std::size_t lines;
+  std::vector<int> missing_channels;
+};
+
+// As the index of the files says.
+const AmsuAFile kAmsuAFiles[] = {
+    {"amsua/AMSUA.bufr", 1350, 1, 4, 45, {7}},   {"amsua/amsa_55.bufr", 660, 6, 4, 22, {7}},
+    {"amsua/aaen_55.bufr", 420, 4, 209, 14, {}}, {"amsua/amsu_55.bufr", 277, 3, 784, 10, {4}},
+    {"amsua/atov_55.bufr", 30, 1, 207, 1, {4}},  {"amsua/amsu-a-noaa-19.bufr", 30, 1, 223, 1, {1, 2}},
+};
+
+class RealAmsuA : public testing::TestWithParam<AmsuAFile> {
+ protected:
+  void SetUp() override { THIN_REQUIRE_SHARED_DATA(); }
+};
+
+TEST_P(RealAmsuA, HoldsWhatTheIndexSays) {
+  const AmsuAFile& file = GetParam();
+  const Result<ReadObservations> contents = read_observations(real_file(file.name));
+  ASSERT_TRUE(contents.ok()) << contents.error().message;
+  const ObservationSet& set = contents->observations;
+  ASSERT_EQ(set.size(), file.observations);
+  EXPECT_EQ(contents->message_count, file.messages);
+  std::set<int> lines;
+  std::vector<std::size_t> present(15, 0);
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    EXPECT_EQ(set.platform[i], file.platform);
+    EXPECT_TRUE(set.field_of_view[i] >= 1 && set.field_of_view[i] <= 30);
+    lines.insert(set.scan_line[i]);
+    for (std::size_t channel = 0; channel < 15; ++channel) {
+      const double value_k = set.values_of(i)[channel];
+      EXPECT_TRUE(std::isnan(value_k) || (value_k > 90 && value_k < 350)) << value_k;
+      present[channel] += std::isnan(value_k) ? 0 : 1;
+    }
+  }
+  EXPECT_EQ(lines.size(), file.lines);
+  for (const int channel : file.missing_channels)
+    EXPECT_EQ(present[static_cast<std::size_t>(channel - 1)], 0U) << channel;
+}
+
+TEST_P(RealAmsuA, EqualsTheOracle) {
+  const std::string path = real_file(GetParam().name);
+  const Result<ReadObservations> contents = read_observations(path);
+  ASSERT_TRUE(contents.ok()) << contents.error().message;
+  test::expect_equal_to_oracle(contents->observations, test::decode_file_slowly(path));
+}
+
+TEST_P(RealAmsuA, ExtractionsKeepEveryKeyOfEveryRetainedSubset) {
+  test::expect_extractions_keep_everything(real_file(GetParam().name), 7);
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, RealAmsuA, testing::ValuesIn(kAmsuAFiles));
+
+TEST(RealAmsuATimes, AreThoseOfTheScanNotOfTheHeader) {
+  THIN_REQUIRE_SHARED_DATA();
+  const Result<ReadObservations> contents = read_observations(real_file("amsua/AMSUA.bufr"));
+  ASSERT_TRUE(contents.ok());
+  const auto [first, last] =
+      std::minmax_element(contents->observations.time_ms.begin(), contents->observations.time_ms.end());
+  EXPECT_EQ(to_iso8601(*first).substr(0, 19), "2013-05-29T12:23:43");
+  EXPECT_EQ(to_iso8601(*last).substr(0, 19), "2013-05-29T12:29:35");
+}
+
+struct RefusedFile {
+  const char* name;
+  const char* said;  // what the error must name
+};
+
+const RefusedFile kRefusedFiles[] = {
+    {"sounders/M02-HIRS-HIRxxx1B-NA-1.0-20181122114854.000000000Z-20181122132602-1304602.bufr", "61 x HIRS (sensor 0)"},
+    {"sounders/hirs_55.bufr", "HIRS (sensor 0)"},
+    {"sounders/metop_mhs.bufr", "MHS (sensor 11)"},
+    {"sounders/mhsa_55.bufr", "MHS (sensor 11)"},
+    {"sounders/atms_201.bufr", "ATMS (310061)"},
+    {"sounders/iasi_241.bufr", "IASI radiances or principal components"},
+    {"sounders/smis_49.bufr", "SSMIS"},
+    {"ncep/gdas.t00z.1bmhs.tm00.bufr_d", "NCEP's own descriptors, whose tables travel inside the file"},
+    {"ncep/1bamua.bufr.subset.txt", "no BUFR message"},
+    {"other/prepbufr.bufr", "prepBUFR"},
+    {"other/Z__C_EDZW_20210516120400_bda01,synop_bufr_GER_999999_999999__MW_466.bufr", "44 x SYNOP"},
+    {"other/synop_multi_subset.bufr", "SYNOP"},
+    {"other/temp_101.bufr", "TEMP"},
+    {"other/airc_142.bufr", "AIREP"},
+    {"ioda/amsua_n19.20211211T210000Z.nc4", "netCDF"},
+    {"ioda/ioda_obs_space.amsua_n19.hofx.2020-12-14T210000Z.nc4", "netCDF"},
+    {"ioda/satwind.20211211T210000Z.nc4", "netCDF"},
+    {"ioda/test-ATOVS.hdf", "netCDF"},
+    {"bad/corruptBUFR.1", "no 7777"},
+    {"bad/isaa41_cytr_broken.bufr", "section 4 runs over"},
+    {"bad/isaa41_cyvv_broken.bufr", "section 3 runs over"},
+    {"bad/segfault1.bufr", "TEMP"},
+    {"bad/unparsable1.bufr", "AIREP"},
+};
+
+class RealRefused : public testing::TestWithParam<RefusedFile> {};
+
+TEST_P(RealRefused, NamesWhatItIs) {
+  THIN_REQUIRE_SHARED_DATA();
+  const Result<ReadObservations> contents = read_observations(real_file(GetParam().name));
+  ASSERT_FALSE(contents.ok());
+  EXPECT_EQ(contents.error().kind, ErrorKind::input);
+  EXPECT_NE(contents.error().message.find(GetParam().said), std::string::npos) << contents.error().message;
+  EXPECT_NE(contents.error().message.find(GetParam().name), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, RealRefused, testing::ValuesIn(kRefusedFiles));
+
+}  // namespace
+}  // namespace thin
