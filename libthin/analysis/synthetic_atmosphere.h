@@ -10,7 +10,7 @@
 // - curved fronts in middle latitudes, across which channels jump within about 100 km.
 //
 // Everything is a function of seed, place and time alone, noise included: the order of calls and the number of threads
-// change nothing. About 5 microseconds per field of view.
+// change nothing. Less than 10 microseconds per field of view.
 
 #include <cstdint>
 #include <vector>

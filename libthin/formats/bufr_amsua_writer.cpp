@@ -106,6 +106,7 @@ void set_times(MessageBuilder& message, std::span<const AmsuaSounding> soundings
   for (const AmsuaSounding& sounding : soundings) times.push_back(to_civil(sounding.view.time_ms));
   const auto field = [&](auto member) {
     std::vector<long> numbers;
+    numbers.reserve(times.size());
     for (const CivilTime& time : times) numbers.push_back(time.*member);
     return numbers;
   };
@@ -115,6 +116,7 @@ void set_times(MessageBuilder& message, std::span<const AmsuaSounding> soundings
   message.set("hour", field(&CivilTime::hour));
   message.set("minute", field(&CivilTime::minute));
   std::vector<double> seconds;
+  seconds.reserve(times.size());
   for (const CivilTime& time : times) seconds.push_back(time.second);
   message.set("second", seconds);
 }

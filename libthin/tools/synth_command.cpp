@@ -203,13 +203,16 @@ Result<FileTotals> write_files(const SynthArguments& arguments, const SynthPlan&
   return totals;
 }
 
+int fail(const Error& error) {
+  fmt::print(stderr, "thin synth: {}\n", error.message);
+  return exit_code(error.kind);
+}
+
 int synthesise(const SynthArguments& arguments) {
   const auto plan = understand(arguments);
-  const auto totals = plan ? write_files(arguments, *plan) : Result<FileTotals>(plan.error());
-  if (!totals) {
-    fmt::print(stderr, "thin synth: {}\n", totals.error().message);
-    return exit_code(totals.error().kind);
-  }
+  if (!plan) return fail(plan.error());
+  const auto totals = write_files(arguments, *plan);
+  if (!totals) return fail(totals.error());
   fmt::print("{} files, {} observations, {:.1f} MB in {}\n", totals->files, totals->observations,
              static_cast<double>(totals->bytes) / 1e6, arguments.output_folder);
   return 0;
