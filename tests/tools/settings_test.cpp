@@ -1,0 +1,58 @@
+#include "libthin/tools/settings.h"
+
+#include <gtest/gtest.h>
+
+namespace thin {
+namespace {
+
+Result<Settings> settings_of(const std::string& text) {
+  return read_settings(*Configuration::parse(text, "c.toml"));
+}
+
+std::string problem_of(const std::string& text) {
+  const Result<Settings> settings = settings_of(text);
+  if (settings) return "";
+  EXPECT_EQ(settings.error().kind, ErrorKind::configuration);
+  return settings.error().message;
+}
+
+TEST(Settings, TwoLinesAreEnough) {
+  const Result<Settings> settings = settings_of("[thinning]\nmethod = \"grid_eea\"\nretain_fraction = 0.1\n");
+  ASSERT_TRUE(settings) << settings.error().message;
+  EXPECT_EQ(settings->method_name, "grid_eea");
+  EXPECT_EQ(settings->method->bandwidth_km(), 100);
+  EXPECT_TRUE(settings_of("[thinning]\nmethod = \"stepwise\"\n"));
+}
+
+TEST(Settings, NameFileLineAndRemedy) {
+  EXPECT_EQ(problem_of("[thinning]\nmethod = \"grid_eae\"\n"),
+            "c.toml:2:10: thinning.method = \"grid_eae\" is not a method; did you mean \"grid_eea\"?");
+  EXPECT_EQ(problem_of("[thinning]\nmethod = \"grid_eea\"\nretain_fractoin = 0.1\nretain_count = 3\n"),
+            "c.toml:3:1: unknown key \"retain_fractoin\" in [thinning]; did you mean \"retain_fraction\"?");
+  EXPECT_EQ(problem_of("[thinning]\nmethod = \"stepwise\"\nstep = 3\nline_offset = 3\n"),
+            "c.toml:4:15: thinning.line_offset must be less than step = 3, not 3");
+  EXPECT_EQ(problem_of("[thinning]\nmethod = \"stepwise\"\n[preperation]\n"),
+            "c.toml:3:2: unknown section [preperation]; did you mean [preparation]?");
+  EXPECT_NE(problem_of("[thinning]\nmethod = \"grid_eea\"\n").find("say how many to keep"), std::string::npos);
+  EXPECT_NE(problem_of("[thinning]\nretain_count = 3\nretain_fraction = 0.1\n").find("give one of the two"),
+            std::string::npos);
+}
+
+TEST(Settings, AMethodsOptionsAreItsOwn) {
+  EXPECT_NE(problem_of("[thinning]\nmethod = \"box\"\nretain_fraction = 0.1\n").find("unknown key \"retain_fraction\""),
+            std::string::npos);
+}
+
+TEST(Settings, LeaveTheDaemonsSectionsToIt) {
+  EXPECT_EQ(problem_of("[thinning]\nmethod = \"box\"\n[daemon]\nanything = 1\n[window]\nelse = 2\n"), "");
+}
+
+TEST(Settings, NothingResolvedDependsOnTheThreads) {
+  const auto one = settings_of("[thinning]\nmethod = \"box\"\n[run]\nthreads = 1\n");
+  const auto two = settings_of("[thinning]\nmethod = \"box\"\n[run]\nthreads = 2\n");
+  EXPECT_EQ(one->threads, 1);
+  EXPECT_EQ(one->resolved, two->resolved);
+}
+
+}  // namespace
+}  // namespace thin
