@@ -70,7 +70,8 @@ void read_message(std::span<const std::uint8_t> bytes, const BufrMessage& messag
   const Result<std::uint32_t> left_out = append_soundings(amsua, message.header, number, contents.observations);
   if (!left_out) return skip(left_out.error().message, "It is damaged: ask the sender for it again.");
   if (*left_out > 0)
-    skip(counted(*left_out, "subset") + " without usable position or time", "Ask the sender for located soundings.");
+    skip(counted(*left_out, "subset") + " without usable position or time, or of another instrument",
+         "Ask the sender for located soundings.");
 }
 
 }  // namespace

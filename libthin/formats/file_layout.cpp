@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <string_view>
 
+#include "libthin/formats/gts_bulletin.h"
+
 namespace thin {
 namespace {
 
@@ -37,7 +39,8 @@ FileLayout layout_of(std::span<const std::uint8_t> bytes) {
   if (text.starts_with("GRIB")) return FileLayout::grib;
   // A transfer may have come no further than the first letters, or the heading in front of them.
   const bool begins_like_bufr = std::string_view("BUFR").starts_with(text.substr(0, 4));
-  if (begins_like_bufr || text.find("BUFR") != std::string_view::npos) return FileLayout::bufr;
+  if (begins_like_bufr || is_cut_gts_heading(bytes) || text.find("BUFR") != std::string_view::npos)
+    return FileLayout::bufr;
   return FileLayout::unknown;
 }
 

@@ -26,9 +26,11 @@ struct ReadObservations {
   std::string layout;           // "bufr"
   std::string instrument;       // "AMSU-A"
   std::uint32_t message_count = 0;
-  std::vector<SkippedPart> skipped;  // messages of other kinds, damaged messages, stray bytes
+  // By offset: messages of other kinds, damaged ones, stray bytes (but padding), subsets without position or time.
+  std::vector<SkippedPart> skipped;
 };
 
+// Not for several threads at once, nor is anything else in this folder: ecCodes and HDF5 keep state for the process.
 // Errors: input, where nothing in the file can be used (with the reason and the remedy); incomplete, where the end of
 // the file is cut off, as of a transfer that still runs; temporary, where the machine fails.
 Result<ReadObservations> read_observations(const std::string& path);
