@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "libthin/formats/bufr_column.h"
 #include "libthin/formats/bufr_kinds.h"
 #include "libthin/observations/time.h"
 
@@ -18,44 +19,10 @@ constexpr int kHirsSlots = 19;
 constexpr const char* kChannelKey = "tovsOrAtovsOrAvhrrInstrumentationChannelNumber";
 constexpr const char* kTemperatureKey = "brightnessTemperature";
 
-// One element of the sequence over the subsets of a message: a single value where it is constant, else one per subset,
-// every `stride`-th.
-class Column {
- public:
-  double operator[](std::size_t subset) const { return values_[stride_ * subset]; }
-
-  // rank: from 1, among the elements of this name in one subset.
-  static Result<Column> read(const EccodesMessage& message, const BufrHeader& header, const std::string& key, int rank);
-
- private:
-  std::vector<double> values_;
-  std::size_t stride_ = 0;
-};
-
-Result<Column> Column::read(const EccodesMessage& message, const BufrHeader& header, const std::string& key, int rank) {
-  Column column;
-  const auto subsets = static_cast<std::size_t>(header.subset_count);
-  // In an uncompressed message ranks run on over the subsets; without rank, all of them come at once.
-  const Result<void> read =
-      message.numbers(header.compressed ? "#" + std::to_string(rank) + "#" + key : key, column.values_);
-  if (!read) return read.error();
-  const std::size_t count = column.values_.size();
-  if (header.compressed) {
-    column.stride_ = count == subsets && subsets > 1 ? 1 : 0;
-    if (count == 1 || count == subsets) return column;
-  } else if (count > 0 && count % subsets == 0 && count / subsets >= static_cast<std::size_t>(rank)) {
-    column.stride_ = count / subsets;
-    column.values_.erase(column.values_.begin(), column.values_.begin() + (rank - 1));
-    return column;
-  }
-  return Error{ErrorKind::input, key + " has " + std::to_string(count) + " values for " + std::to_string(subsets) +
-                                     " subsets: its subsets are not all built alike"};
-}
-
 // The channels of a message, slot by slot.
 struct Slots {
-  std::vector<Column> codes;
-  std::vector<Column> temperatures;
+  std::vector<BufrColumn> codes;
+  std::vector<BufrColumn> temperatures;
 };
 
 int slot_count(const BufrHeader& header) {
@@ -64,9 +31,9 @@ int slot_count(const BufrHeader& header) {
 }
 
 Result<void> read_columns(const EccodesMessage& message, const BufrHeader& header, const char* key,
-                          std::vector<Column>& columns) {
+                          std::vector<BufrColumn>& columns) {
   for (int rank = 1; rank <= slot_count(header); ++rank) {
-    Result<Column> column = Column::read(message, header, key, rank);
+    Result<BufrColumn> column = BufrColumn::read(message, header, key, rank);
     if (!column) return column.error();
     columns.push_back(std::move(*column));
   }
@@ -84,9 +51,9 @@ bool is_unused(double code) {
 }
 
 // Whether the slots in use, of which there must be some, all hold AMSU-A channels.
-bool codes_say_amsua(const std::vector<Column>& codes, std::size_t subset) {
+bool codes_say_amsua(const std::vector<BufrColumn>& codes, std::size_t subset) {
   bool any = false;
-  for (const Column& code : codes) {
+  for (const BufrColumn& code : codes) {
     if (is_unused(code[subset])) continue;
     if (channel_of(code[subset]) == 0) return false;
     any = true;
@@ -94,19 +61,19 @@ bool codes_say_amsua(const std::vector<Column>& codes, std::size_t subset) {
   return any;
 }
 
-bool is_amsua(const Column& sensor, const std::vector<Column>& codes, std::size_t subset) {
+bool is_amsua(const BufrColumn& sensor, const std::vector<BufrColumn>& codes, std::size_t subset) {
   return std::isnan(sensor[subset]) ? codes_say_amsua(codes, subset) : sensor[subset] == kSensorAmsuA;
 }
 
 // Everything but the channels.
 struct Places {
-  Column sensor, platform, scan_line, field_of_view, latitude, longitude;
-  std::array<Column, 6> clock;  // year to second
+  BufrColumn sensor, platform, scan_line, field_of_view, latitude, longitude;
+  std::array<BufrColumn, 6> clock;  // year to second
 };
 
 Result<Places> read_places(const EccodesMessage& message, const BufrHeader& header) {
   Places places;
-  const std::pair<const char*, Column*> columns[] = {
+  const std::pair<const char*, BufrColumn*> columns[] = {
       {"satelliteSensorIndicator", &places.sensor},
       {"satelliteIdentifier", &places.platform},
       {"scanLineNumber", &places.scan_line},
@@ -121,15 +88,15 @@ Result<Places> read_places(const EccodesMessage& message, const BufrHeader& head
       {"second", &places.clock[5]},
   };
   for (const auto& [key, column] : columns) {
-    Result<Column> read = Column::read(message, header, key, 1);
+    Result<BufrColumn> read = BufrColumn::read(message, header, key, 1);
     if (!read) return read.error();
     *column = std::move(*read);
   }
   return places;
 }
 
-std::optional<std::int64_t> time_of(const std::array<Column, 6>& clock, std::size_t subset) {
-  for (const Column& column : clock)
+std::optional<std::int64_t> time_of(const std::array<BufrColumn, 6>& clock, std::size_t subset) {
+  for (const BufrColumn& column : clock)
     if (std::isnan(column[subset])) return std::nullopt;
   const auto whole = [&](int part) { return static_cast<int>(clock[static_cast<std::size_t>(part)][subset]); };
   return to_time_ms({whole(0), whole(1), whole(2), whole(3), whole(4), clock[5][subset]});
@@ -197,7 +164,7 @@ AmsuAMessage failed(const std::string& reason) {
 }
 
 // Names what a decoded message without AMSU-A holds, by its first subset.
-AmsuAMessage other_instrument(const Column& sensor) {
+AmsuAMessage other_instrument(const BufrColumn& sensor) {
   const std::string name =
       std::isnan(sensor[0]) ? "ATOVS soundings of an unnamed instrument" : sensor_name(static_cast<int>(sensor[0]));
   return {AmsuAMessage::State::other_kind, name, other_sensor_remedy(), std::nullopt};
@@ -216,9 +183,9 @@ AmsuAMessage open_amsua(std::span<const std::uint8_t> bytes, const BufrHeader& h
   if (!message) return failed(message.error().message);
   if (const Result<void> unpacked = message->unpack(); !unpacked) return failed(unpacked.error().message);
 
-  const Result<Column> sensor = Column::read(*message, header, "satelliteSensorIndicator", 1);
+  const Result<BufrColumn> sensor = BufrColumn::read(*message, header, "satelliteSensorIndicator", 1);
   if (!sensor) return failed(sensor.error().message);
-  std::vector<Column> codes;
+  std::vector<BufrColumn> codes;
   bool found = false;
   // MHS has five slots only; nothing of 310010 is AMSU-A.
   if (std::count(header.descriptors.begin(), header.descriptors.end(), kAmsuBSequence) == 0) {

@@ -67,7 +67,7 @@ class Extraction {
     const std::size_t messages_begin = output_.size();
     for (std::size_t i = 0; i < bulletin.message_count; ++i) {
       const std::size_t number = bulletin.first_message + i;
-      if (const Result<void> added = add_message(scan_.messages[number], subsets[number]); !added) return added;
+      if (Result<void> added = add_message(scan_.messages[number], subsets[number]); !added) return added;
     }
     if (output_.size() == messages_begin) {
       output_.resize(begin);
@@ -152,7 +152,7 @@ Result<ExtractionSummary> extract_bufr(std::span<const std::uint8_t> bytes, cons
                                        const OutputOptions& options) {
   Extraction extraction(bytes, name, options);
   if (const Result<void> complete = check_complete(extraction.scan(), name); !complete) return complete.error();
-  const Result<ExtractionSummary> summary = extraction.run(retained);
+  Result<ExtractionSummary> summary = extraction.run(retained);
   if (!summary || summary->messages == 0) return summary;
   if (const Result<void> written = write_file_bytes(output_path, extraction.output()); !written) return written.error();
   if (const Result<void> right = check_written(output_path, *summary, extraction.subsets_written()); !right)
