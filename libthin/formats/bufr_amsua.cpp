@@ -142,25 +142,15 @@ std::array<double, kAmsuAChannelCount> temperatures_of(const Slots& slots, std::
   return temperatures;
 }
 
-// What keeps ranks from meaning what they mean in a lone ATOVS sequence; empty for nothing. Behind the sequence
-// anything may follow; in front of it single elements may stand that it doesn't hold itself: they shift no rank.
-std::string unsuitable_descriptors(const BufrHeader& header) {
-  const auto is_sequence = [](int descriptor) { return descriptor >= kHirsSequence && descriptor <= kAmsuBSequence; };
-  const auto first = std::find_if(header.descriptors.begin(), header.descriptors.end(), is_sequence);
-  if (std::count_if(header.descriptors.begin(), header.descriptors.end(), is_sequence) != 1)
-    return "it holds several ATOVS sequences, of which none can be chosen";
-  for (auto descriptor = header.descriptors.begin(); descriptor != first; ++descriptor) {
-    const int element_class = *descriptor / 1000;
-    const bool own = *descriptor == 1007 || *descriptor == 2048 || *descriptor == 2150 || *descriptor == 12063 ||
-                     element_class == 4 || element_class == 5 || element_class == 6;
-    if (*descriptor >= 100'000 || own)
-      return "descriptor " + std::to_string(*descriptor) + " stands in front of the ATOVS sequence, which is not read";
-  }
-  return "";
-}
-
 AmsuAMessage failed(const std::string& reason) {
   return {AmsuAMessage::State::failed, reason, "It is damaged: ask the sender for it again.", std::nullopt};
+}
+
+AmsuAMessage without_tables(const BufrHeader& header) {
+  const std::string version = "version " + std::to_string(header.master_table_version) + " of master table " +
+                              std::to_string(header.master_table);
+  return {AmsuAMessage::State::failed, "it needs " + version + ", which this ecCodes does not have",
+          "Install a newer ecCodes, or ask the sender for it again where it is damaged.", std::nullopt};
 }
 
 // Names what a decoded message without AMSU-A holds, by its first subset.
@@ -178,7 +168,8 @@ AmsuAMessage open_amsua(std::span<const std::uint8_t> bytes, const BufrHeader& h
     return {AmsuAMessage::State::other_kind, kind.name, kind.remedy, std::nullopt};
   }
   if (header.subset_count == 0) return failed("it has no subsets");
-  if (const std::string problem = unsuitable_descriptors(header); !problem.empty()) return failed(problem);
+  if (const std::string problem = unsuitable_atovs(header); !problem.empty()) return failed(problem);
+  if (!eccodes_has_tables(header.master_table, header.master_table_version)) return without_tables(header);
   Result<EccodesMessage> message = EccodesMessage::open(bytes);
   if (!message) return failed(message.error().message);
   if (const Result<void> unpacked = message->unpack(); !unpacked) return failed(unpacked.error().message);

@@ -30,6 +30,8 @@ Result<std::size_t> section_length(std::span<const std::uint8_t> message, int se
 
 // Section 1 as far as it is needed; returns whether it announces a section 2.
 bool read_section1(std::span<const std::uint8_t> section, BufrHeader& header) {
+  header.master_table = section[3];
+  header.master_table_version = section[header.edition == 4 ? 13 : 10];
   if (header.edition == 4) {
     header.centre = static_cast<int>(big_endian(section, 4, 2));
     header.data_category = section[10];

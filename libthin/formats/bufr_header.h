@@ -23,6 +23,8 @@ struct BufrHeader {
   int centre = 0;
   int data_category = 0;      // BUFR table A
   int data_sub_category = 0;  // the originating centre's own
+  int master_table = 0;       // 0: meteorology
+  int master_table_version = 0;
   int subset_count = 0;
   bool compressed = false;
   std::size_t section2_offset = 0;  // from the first byte of the message

@@ -22,6 +22,11 @@ constexpr int kSensorMhs = 11;
 // Whether one of the ATOVS sequences is among the descriptors, so that the sensor stands in the message.
 bool is_atovs(const BufrHeader& header);
 
+// What keeps ranks of elements from meaning what they mean in a lone ATOVS sequence; empty for nothing. Behind the
+// sequence anything may follow; in front of it single elements may stand that it doesn't hold itself: they shift no
+// rank. REQUIRES: is_atovs(header)
+std::string unsuitable_atovs(const BufrHeader& header);
+
 // "HIRS (sensor 0)"
 std::string sensor_name(int sensor);
 

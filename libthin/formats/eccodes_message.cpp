@@ -3,8 +3,11 @@
 #include <eccodes.h>
 
 #include <cassert>
+#include <filesystem>
 #include <limits>
 #include <mutex>
+#include <sstream>
+#include <system_error>
 
 namespace thin {
 namespace {
@@ -33,6 +36,23 @@ Error eccodes_error(const std::string& what, int code) {
 }
 
 }  // namespace
+
+bool eccodes_has_tables(int master_table, int version) {
+  const char* folders = codes_definition_path(quiet_context());
+  if (!folders) return false;
+  std::istringstream list(folders);
+  for (std::string folder; std::getline(list, folder, ':');) {
+    // Some builds carry their definitions inside the library, where no file shows what they have.
+    if (folder.starts_with("/MEMFS")) return true;
+    const auto tables =
+        std::filesystem::path(folder) / "bufr/tables" / std::to_string(master_table) / "wmo" / std::to_string(version);
+    std::error_code ignored;
+    if (std::filesystem::exists(tables / "sequence.def", ignored) &&
+        std::filesystem::exists(tables / "element.table", ignored))
+      return true;
+  }
+  return false;
+}
 
 void EccodesMessage::Delete::operator()(grib_handle* handle) const {
   codes_handle_delete(handle);

@@ -17,6 +17,10 @@ struct grib_handle;
 
 namespace thin {
 
+// Whether this ecCodes has the tables that a message of this master table and version is decoded with. Where it hasn't,
+// the message must not be opened: ecCodes 2.28 ends the process over it.
+bool eccodes_has_tables(int master_table, int version);
+
 class EccodesMessage {
  public:
   // bytes: one whole message; copied, so that ecCodes may change it. Error input, in ecCodes's words.

@@ -245,5 +245,34 @@ TEST(BufrAmsuA, DescriptorsThatShiftRanksAreRefused) {
   EXPECT_NE(error_of(two_latitudes).message.find("5001"), std::string::npos);
 }
 
+// ecCodes ends the process over each of these; they must not reach it.
+TEST(BufrAmsuA, WhatEcCodesWouldDieOfIsRefused) {
+  const ByteVector message = make_message(test_soundings(2), {.descriptors = {310009, 101002, 33007}});
+  EXPECT_EQ(read_bytes_as_file(message).observations.size(), 2U);
+  ByteVector unknown_tables = message, long_replication = message;
+  unknown_tables[8 + 13] = 200;
+  EXPECT_NE(error_of(unknown_tables).message.find("version 200 of master table 0"), std::string::npos);
+  const std::size_t replication = 8 + 22 + 7 + 2;
+  ASSERT_EQ(message[replication], 0x41);
+  for (const int replicated : {0, 2, 31}) {
+    long_replication[replication] = static_cast<std::uint8_t>(0x40 + replicated);
+    EXPECT_NE(error_of(long_replication).message.find("repeat more descriptors"), std::string::npos) << replicated;
+  }
+}
+
+TEST(BufrAmsuA, OperatorsThatEcCodesWouldDieOfAreRefused) {
+  const ByteVector message = make_message(test_soundings(2), {.descriptors = {310009, 33007, 33007, 33007}});
+  const auto with = [&](std::vector<std::pair<int, int>> descriptors) {
+    ByteVector changed = message;
+    for (std::size_t i = 0; i < descriptors.size(); ++i) {
+      changed[8 + 22 + 9 + 2 * i] = static_cast<std::uint8_t>(0x80 + descriptors[i].first);
+      changed[8 + 22 + 10 + 2 * i] = static_cast<std::uint8_t>(descriptors[i].second);
+    }
+    return error_of(changed).message;
+  };
+  EXPECT_NE(with({{31, 31}}).find("operators without sense"), std::string::npos);          // unknown
+  EXPECT_NE(with({{22, 0}, {36, 0}}).find("operators without sense"), std::string::npos);  // no bitmap
+}
+
 }  // namespace
 }  // namespace thin
