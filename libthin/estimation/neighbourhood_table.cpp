@@ -45,13 +45,11 @@ void add_columns(NeighbourhoodTable& table, std::size_t observation_count) {
   for (std::size_t p = 0; p < observation_count; ++p) table.column_begin[p + 1] += table.column_begin[p];
 
   std::vector<std::uint64_t> next(table.column_begin.begin(), table.column_begin.end() - 1);
-  table.column_entry.resize(table.entry_count());
   table.evaluation_point.resize(table.entry_count());
   table.column_weight.resize(table.entry_count());
   for (std::size_t q = 0; q < table.evaluation_point_count(); ++q)
     for (std::uint64_t entry = table.row_begin[q]; entry < table.row_begin[q + 1]; ++entry) {
       const std::uint64_t place = next[table.observation[entry]]++;
-      table.column_entry[entry] = static_cast<std::uint32_t>(place);
       table.evaluation_point[place] = static_cast<std::uint32_t>(q);
       table.column_weight[place] = table.weight[entry];
     }

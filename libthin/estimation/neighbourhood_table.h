@@ -17,7 +17,6 @@ struct NeighbourhoodTable {
   std::vector<std::uint64_t> row_begin;
   std::vector<std::uint32_t> observation;
   std::vector<double> weight;
-  std::vector<std::uint32_t> column_entry;  // where the same entry stands below
 
   // By observation p: entries column_begin[p] .. column_begin[p+1], by ascending evaluation point.
   std::vector<std::uint64_t> column_begin;

@@ -3,7 +3,6 @@
 #include <cassert>
 
 #include "libthin/estimation/lanes.h"
-#include "libthin/foundation/parallel.h"
 
 namespace thin {
 namespace {
@@ -26,45 +25,53 @@ inline __attribute__((always_inline)) double change(const double* mean, const do
   return a * (2 * across(along) + a * across(squared));
 }
 
-struct RowView {
+struct Row {
   const double* mean;
   const double* deviation;
   double weight_sum;
+  std::uint32_t size;
+  std::uint32_t* observation;
+  double* weight;
+  double* change;
 };
 
-// The inner loop of full updating: the change that each retained pair of one row would cause, into its cache place, and
-// the row compacted to its retained pairs. Returns how many these are. Width is known to the compiler, or 0.
-template <std::size_t Width, class Pair>
-inline __attribute__((always_inline)) std::uint32_t refresh_pairs(const RowView& row, Pair* pairs, std::uint32_t size,
-                                                                  const std::uint8_t* retained, const double* values,
-                                                                  double* cache, std::size_t any_width) {
+// The inner loop of full updating: the row compacted to its retained pairs, the change that each of them would cause
+// made right, and the increments moved by the differences. Returns how many are retained. Width is known to the
+// compiler, or 0.
+template <std::size_t Width>
+inline __attribute__((always_inline)) std::uint32_t refresh_pairs(const Row& row, const std::uint8_t* retained,
+                                                                  const double* values, double* increments,
+                                                                  std::size_t any_width) {
   const std::size_t width = Width ? Width : any_width;
   std::uint32_t kept = 0;
-  for (std::uint32_t i = 0; i < size; ++i) {
-    const Pair pair = pairs[i];
-    if (!retained[pair.observation]) continue;
-    pairs[kept++] = pair;
-    const double a = pair.weight / (row.weight_sum - pair.weight);
-    cache[pair.column_entry] = change(row.mean, row.deviation, values + pair.observation * width, width, a);
+  for (std::uint32_t i = 0; i < row.size; ++i) {
+    const std::uint32_t p = row.observation[i];
+    if (!retained[p]) continue;
+    const double weight = row.weight[i];
+    const double a = weight / (row.weight_sum - weight);
+    const double now = change(row.mean, row.deviation, values + p * width, width, a);
+    increments[p] += now - row.change[i];
+    row.observation[kept] = p;
+    row.weight[kept] = weight;
+    row.change[kept] = now;
+    ++kept;
   }
   return kept;
 }
 
-template <class Pair>
-THIN_VECTOR_CLONES std::uint32_t refresh_pairs(const RowView& row, Pair* pairs, std::uint32_t size,
-                                               const std::uint8_t* retained, const double* values, double* cache,
-                                               std::size_t width) {
+THIN_VECTOR_CLONES std::uint32_t refresh_pairs(const Row& row, const std::uint8_t* retained, const double* values,
+                                               double* increments, std::size_t width) {
   switch (width) {
     case 4:
-      return refresh_pairs<4>(row, pairs, size, retained, values, cache, width);
+      return refresh_pairs<4>(row, retained, values, increments, width);
     case 8:
-      return refresh_pairs<8>(row, pairs, size, retained, values, cache, width);
+      return refresh_pairs<8>(row, retained, values, increments, width);
     case 12:
-      return refresh_pairs<12>(row, pairs, size, retained, values, cache, width);
+      return refresh_pairs<12>(row, retained, values, increments, width);
     case 16:
-      return refresh_pairs<16>(row, pairs, size, retained, values, cache, width);
+      return refresh_pairs<16>(row, retained, values, increments, width);
     default:
-      return refresh_pairs<0>(row, pairs, size, retained, values, cache, width);
+      return refresh_pairs<0>(row, retained, values, increments, width);
   }
 }
 
@@ -73,15 +80,15 @@ THIN_VECTOR_CLONES std::uint32_t refresh_pairs(const RowView& row, Pair* pairs, 
 RemovalSums::RemovalSums(NeighbourhoodTable table, std::span<const double> values, std::size_t channels)
     : width_(padded(channels)),
       values_(pad_rows(values, channels)),
+      pair_observation_(std::move(table.observation)),
+      pair_weight_(std::move(table.weight)),
       column_begin_(std::move(table.column_begin)),
       column_point_(std::move(table.evaluation_point)),
       column_weight_(std::move(table.column_weight)),
+      increments_(column_begin_.size() - 1, 0.0),
       retained_(column_begin_.size() - 1, 1),
       marked_at_(column_begin_.size() - 1, 0) {
   const std::size_t points = table.row_begin.size() - 1;
-  pairs_.resize(table.observation.size());
-  for (std::size_t entry = 0; entry < pairs_.size(); ++entry)
-    pairs_[entry] = {table.observation[entry], table.column_entry[entry], table.weight[entry]};
   points_.resize(points);
   value_sums_.resize(points * width_);
   means_.resize(points * width_);
@@ -102,11 +109,11 @@ void RemovalSums::sum_afresh(std::size_t q) {
   double* sums = value_sums_.data() + q * width_;
   std::fill(sums, sums + width_, 0.0);
   point.weight_sum = 0;
-  for (std::uint32_t i = 0; i < point.row_size; ++i) {
-    const Pair& pair = pairs_[point.row_begin + i];
-    if (!retained_[pair.observation]) continue;
-    point.weight_sum += pair.weight;
-    for (std::size_t c = 0; c < width_; ++c) sums[c] += pair.weight * values_[pair.observation * width_ + c];
+  for (std::uint64_t i = point.row_begin; i < point.row_begin + point.row_size; ++i) {
+    const std::uint32_t p = pair_observation_[i];
+    if (!retained_[p]) continue;
+    point.weight_sum += pair_weight_[i];
+    for (std::size_t c = 0; c < width_; ++c) sums[c] += pair_weight_[i] * values_[p * width_ + c];
   }
   point.weight_sum_when_summed = point.weight_sum;
 }
@@ -138,28 +145,48 @@ double RemovalSums::pair_change(std::size_t q, std::uint32_t p, double weight) c
                 weight / (point.weight_sum - weight));
 }
 
-void RemovalSums::refresh_row(std::size_t q, std::vector<std::uint32_t>* changed) {
+void RemovalSums::refresh_row(std::size_t q) {
   Point& point = points_[q];
-  Pair* row = &pairs_[point.row_begin];
-  const RowView view{&means_[q * width_], &deviations_[q * width_], point.weight_sum};
-  point.row_size =
-      refresh_pairs(view, row, point.row_size, retained_.data(), values_.data(), column_change_.data(), width_);
+  const std::uint64_t first = point.row_begin;
+  if (point.retained_count > 1) {
+    const Row row{&means_[q * width_],       &deviations_[q * width_], point.weight_sum,    point.row_size,
+                  &pair_observation_[first], &pair_weight_[first],     &pair_change_[first]};
+    point.row_size = refresh_pairs(row, retained_.data(), values_.data(), increments_.data(), width_);
+  } else {
+    refresh_short_row(q);
+  }
   assert(point.row_size == point.retained_count);
-  if (point.row_size == 1) column_change_[row->column_entry] = pair_change(q, row->observation, row->weight);
-  if (!changed) return;
-  for (std::uint32_t i = 0; i < point.row_size; ++i) {
-    const std::uint32_t p = row[i].observation;
+}
+
+// At most one pair left: taking it out leaves the estimate 0.
+void RemovalSums::refresh_short_row(std::size_t q) {
+  Point& point = points_[q];
+  for (std::uint64_t i = point.row_begin; i < point.row_begin + point.row_size; ++i) {
+    const std::uint32_t p = pair_observation_[i];
+    if (!retained_[p]) continue;
+    const double now = pair_change(q, p, pair_weight_[i]);
+    increments_[p] += now - pair_change_[i];
+    pair_observation_[point.row_begin] = p;
+    pair_weight_[point.row_begin] = pair_weight_[i];
+    pair_change_[point.row_begin] = now;
+  }
+  point.row_size = point.retained_count;
+}
+
+void RemovalSums::mark_row(std::size_t q, std::vector<std::uint32_t>& changed) {
+  const Point& point = points_[q];
+  for (std::uint64_t i = point.row_begin; i < point.row_begin + point.row_size; ++i) {
+    const std::uint32_t p = pair_observation_[i];
     if (marked_at_[p] == step_) continue;
     marked_at_[p] = step_;
-    changed->push_back(p);
+    changed.push_back(p);
   }
 }
 
-void RemovalSums::fill_cache() {
-  column_change_.assign(column_point_.size(), 0.0);
-  parallel_ranges(points_.size(), 256, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t q = begin; q < end; ++q) refresh_row(q, nullptr);
-  });
+void RemovalSums::track_increments() {
+  pair_change_.assign(pair_observation_.size(), 0.0);
+  std::fill(increments_.begin(), increments_.end(), 0.0);
+  for (std::size_t q = 0; q < points_.size(); ++q) refresh_row(q);
 }
 
 void RemovalSums::remove(std::uint32_t p, std::vector<std::uint32_t>* changed) {
@@ -169,14 +196,10 @@ void RemovalSums::remove(std::uint32_t p, std::vector<std::uint32_t>* changed) {
   for (std::uint64_t entry = column_begin_[p]; entry < column_begin_[p + 1]; ++entry) {
     const std::uint32_t q = column_point_[entry];
     take_out(q, p, column_weight_[entry]);
-    if (changed) refresh_row(q, changed);
+    if (!changed) continue;
+    refresh_row(q);
+    mark_row(q, *changed);
   }
-}
-
-double RemovalSums::cached_increment(std::uint32_t p) const {
-  double sum = 0;
-  for (std::uint64_t entry = column_begin_[p]; entry < column_begin_[p + 1]; ++entry) sum += column_change_[entry];
-  return sum;
 }
 
 double RemovalSums::increment(std::uint32_t p) const {

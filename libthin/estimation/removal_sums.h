@@ -8,10 +8,10 @@
 //
 // S_q and Z_q are updated in place, and summed afresh from the retained whenever Z_q has halved, so that the rounding
 // left behind by large removed weights never outweighs what remains: the sums stay within 1e-9 of a recomputation.
-// The change at q caused by p is cached for each pair; an increment is always the sum of its pairs in one order, so it
-// depends on the sums alone and not on the way that led to them.
+// The change at q that p would cause is cached for each pair, and the increment of p follows it by differences. Rows
+// are passed through in memory order, and compacted to their retained pairs on the way.
 //
-// Memory: about 36 bytes per pair of the table. Time per removal: the pairs of the evaluation points within reach.
+// Memory: about 32 bytes per pair of the table. Time per removal: the pairs of the evaluation points within reach.
 
 #include <cstdint>
 #include <span>
@@ -26,16 +26,18 @@ class RemovalSums {
   // values: n x channels, none missing. The full set is retained.
   RemovalSums(NeighbourhoodTable table, std::span<const double> values, std::size_t channels);
 
-  // Fills the cache, for `remove` with full updating and for cached_increment.
-  void fill_cache();
+  // Computes the increments of all, for `remove` with full updating and for tracked_increment.
+  void track_increments();
 
-  // Takes p out. With `changed`: brings the cache of all that are still retained up to date, and appends to `changed`,
-  // once each, those whose increment may differ now. REQUIRES: is_retained(p); with `changed`: fill_cache was called
+  // Takes p out. With `changed`: brings the increments of all that are still retained up to date, and appends to
+  // `changed`, once each, those that may differ now. REQUIRES: is_retained(p); with `changed`: track_increments()
+  // before
   void remove(std::uint32_t p, std::vector<std::uint32_t>* changed = nullptr);
 
-  double cached_increment(std::uint32_t p) const;
+  // As of the last removal. REQUIRES: every removal was with `changed`
+  double tracked_increment(std::uint32_t p) const { return increments_[p]; }
 
-  // The same from the sums, without the cache: the cost is in the channels.
+  // The same, straight from the sums: equal to rounding, at the cost of the channels.
   double increment(std::uint32_t p) const;
 
   // Counts removals; the increment of p is as it was at `step` unless changed_since(p, step).
@@ -54,11 +56,6 @@ class RemovalSums {
   double value_sum(std::size_t q, std::size_t channel) const { return value_sums_[q * width_ + channel]; }
 
  private:
-  struct Pair {  // of a row; rows are compacted when they are passed through
-    std::uint32_t observation;
-    std::uint32_t column_entry;
-    double weight;
-  };
   struct Point {
     std::uint64_t row_begin;
     std::uint32_t row_size;  // pairs that may still be retained
@@ -72,7 +69,9 @@ class RemovalSums {
   void update_means(std::size_t q);
   void take_out(std::size_t q, std::uint32_t p, double weight);
   double pair_change(std::size_t q, std::uint32_t p, double weight) const;
-  void refresh_row(std::size_t q, std::vector<std::uint32_t>* changed);
+  void refresh_row(std::size_t q);
+  void refresh_short_row(std::size_t q);
+  void mark_row(std::size_t q, std::vector<std::uint32_t>& changed);
 
   std::size_t width_;               // channels, padded to whole groups of lanes
   std::vector<double> values_;      // n x width
@@ -81,13 +80,16 @@ class RemovalSums {
   std::vector<double> means_;       // |Q| x width: m, or 0
   std::vector<double> deviations_;  // |Q| x width: m - est_P0
   std::vector<Point> points_;
-  std::vector<Pair> pairs_;
+  // Pairs by evaluation point, the retained ones of each row in front.
+  std::vector<std::uint32_t> pair_observation_;
+  std::vector<double> pair_weight_;
+  std::vector<double> pair_change_;  // that taking the observation out would cause there
 
   std::vector<std::uint64_t> column_begin_;
   std::vector<std::uint32_t> column_point_;
   std::vector<double> column_weight_;
-  std::vector<double> column_change_;  // the cache
 
+  std::vector<double> increments_;
   std::vector<std::uint8_t> retained_;
   std::vector<std::uint32_t> marked_at_;  // the step at which an observation was last put on `changed`
   std::uint32_t step_ = 0;

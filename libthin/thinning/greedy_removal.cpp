@@ -11,7 +11,7 @@ std::uint32_t take_least_full(RemovalSums& sums, Queue& queue, std::vector<std::
   const std::uint32_t least = queue.pop();
   changed.clear();
   sums.remove(least, &changed);
-  for (const std::uint32_t p : changed) queue.update(p, sums.cached_increment(p));
+  for (const std::uint32_t p : changed) queue.update(p, sums.tracked_increment(p));
   return least;
 }
 
@@ -32,10 +32,10 @@ std::uint32_t take_least_lazy(RemovalSums& sums, Queue& queue, std::vector<std::
 Retained remove_greedily(RemovalSums& sums, std::size_t retain_count, Update update,
                          std::vector<std::uint32_t>* removed) {
   const std::size_t n = sums.observation_count();
-  if (update == Update::full) sums.fill_cache();
+  if (update == Update::full) sums.track_increments();
   std::vector<double> increments(n);
   for (std::uint32_t p = 0; p < n; ++p)
-    increments[p] = update == Update::full ? sums.cached_increment(p) : sums.increment(p);
+    increments[p] = update == Update::full ? sums.tracked_increment(p) : sums.increment(p);
 
   Queue queue(increments);
   std::vector<std::uint32_t> changed;

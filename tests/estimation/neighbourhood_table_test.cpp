@@ -43,15 +43,14 @@ TEST(NeighbourhoodTable, ColumnsAreTheSameEntriesByObservation) {
   const auto table = neighbourhood_table(set.position_km, set.position_km, {80});
   ASSERT_TRUE(table);
   ASSERT_EQ(table->column_begin.size(), set.size() + 1);
+  std::vector<std::uint64_t> next(table->column_begin.begin(), table->column_begin.end() - 1);
   for (std::size_t q = 0; q < table->evaluation_point_count(); ++q)
     for (std::uint64_t entry = table->row_begin[q]; entry < table->row_begin[q + 1]; ++entry) {
-      const std::uint32_t place = table->column_entry[entry];
-      const std::uint32_t p = table->observation[entry];
-      EXPECT_GE(place, table->column_begin[p]);
-      EXPECT_LT(place, table->column_begin[p + 1]);
+      const std::uint64_t place = next[table->observation[entry]]++;
       EXPECT_EQ(table->evaluation_point[place], q);
       EXPECT_EQ(table->column_weight[place], table->weight[entry]);
     }
+  for (std::size_t p = 0; p < set.size(); ++p) EXPECT_EQ(next[p], table->column_begin[p + 1]);
 }
 
 TEST(NeighbourhoodTable, IsTheSameForAnyNumberOfThreads) {
@@ -64,7 +63,7 @@ TEST(NeighbourhoodTable, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one.row_begin, two.row_begin);
   EXPECT_EQ(one.observation, two.observation);
   EXPECT_EQ(one.weight, two.weight);
-  EXPECT_EQ(one.column_entry, two.column_entry);
+  EXPECT_EQ(one.evaluation_point, two.evaluation_point);
 }
 
 TEST(NeighbourhoodTable, OfNothingIsEmpty) {
