@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 
+#include "daemon/archive.h"
 #include "daemon/clock.h"
 #include "daemon/log.h"
 #include "daemon/recovery.h"
@@ -125,6 +126,18 @@ void Daemon::step() {
   if (!stop_deadline_ && work_->scanned_ms && start_patience_.may_try(now))
     start_patience_.note(work_->pipeline.start_due(closing()), now, retry_seconds);
   if (settle_patience_.may_try(now)) settle_patience_.note(work_->pipeline.settle(), now, retry_seconds);
+  purge_archive_if_due(now);
+}
+
+void Daemon::purge_archive_if_due(MonotonicTime now) {
+  if (!settings_.daemon.keep_archive_days || (next_purge_ && now < *next_purge_)) return;
+  next_purge_ = now + std::chrono::hours(1);
+  const std::int64_t before_ms = wall_clock_ms() - milliseconds(*settings_.daemon.keep_archive_days * 86400);
+  const auto removed = purge_archive(folders_.archive, before_ms);
+  if (!removed)
+    log(Level::warning, removed.error().message);
+  else if (*removed > 0)
+    log(Level::information, fmt::format("{} files removed from the archive: older than keep_archive_days", *removed));
 }
 
 Closing Daemon::closing() {

@@ -60,6 +60,7 @@ class Daemon {
   std::int64_t milliseconds_to_wait();
   bool is_over();
   int exit_status();
+  void purge_archive_if_due(MonotonicTime now);
   void journal_failed(const std::string& why);
 
   Settings settings_;
@@ -70,7 +71,7 @@ class Daemon {
   Notification notification_;
   std::unique_ptr<Work> work_;
   Patience journal_patience_, intake_patience_, start_patience_, settle_patience_;
-  std::optional<MonotonicTime> stop_deadline_;
+  std::optional<MonotonicTime> stop_deadline_, next_purge_;
   std::int64_t changes_ = 0;             // of the journal, when the last turn ended
   std::int64_t quarantined_before_ = 0;  // this call
   bool busy_ = true;                     // the last turn changed something: the next may find more to do

@@ -7,6 +7,7 @@
 #include "daemon/clock.h"
 #include "daemon/log.h"
 #include "daemon/pipeline.h"
+#include "daemon/publication.h"
 #include "daemon/quarantine.h"
 
 namespace thind {
@@ -34,9 +35,15 @@ Result<void> Pipeline::start_probe(const WindowRecord& window) {
 }
 
 Result<void> Pipeline::finish_probe(const Job& job, WorkerExit exit) {
-  const WindowReport report = read_window_report(std::move(exit));
+  WindowReport report = read_window_report(std::move(exit));
   const auto window = journal_.window(job.window);
   const auto file = journal_.file(job.hash);
+  if (report.outcome == Outcome::done) {
+    if (auto valid = validate_outputs(job.outputs, report); !valid) {
+      report.outcome = Outcome::failed;
+      report.reason = valid.error().message;
+    }
+  }
   if (!window || !file) return {};
   switch (report.outcome) {
     case Outcome::done:

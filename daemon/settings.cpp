@@ -164,7 +164,7 @@ void WindowSettings::declare(thin::OptionTable& table) {
   table.add(
       "anchor_minutes", anchor_minutes,
       {.unit = "min",
-       .explanation = "a window begins this long after midnight UTC; -90 with length 180 centres on 00, 03, ..."});
+       .explanation = "windows are counted from midnight UTC plus this; -90 with length 180 centres on 00, 03, ..."});
   table.add("cutoff_minutes", cutoff_minutes,
             {.unit = "min", .explanation = "after a window's end, by the wall clock, it is closed"});
   table.add("quiet_seconds", quiet_seconds,

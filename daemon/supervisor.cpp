@@ -18,6 +18,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::int64_t kOpenFiles = 1024;
+
 struct Pipe {
   Descriptor read_end, write_end;
 };
@@ -44,6 +46,7 @@ void limit(int resource, std::int64_t value) {
   limit(RLIMIT_AS, limits.memory_bytes);
   limit(RLIMIT_CPU, limits.cpu_seconds);
   limit(RLIMIT_FSIZE, limits.file_bytes);
+  limit(RLIMIT_NOFILE, kOpenFiles);
   const rlimit none{0, 0};
   ::setrlimit(RLIMIT_CORE, &none);
   const int nothing = ::open("/dev/null", O_RDONLY);

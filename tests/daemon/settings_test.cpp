@@ -85,6 +85,24 @@ TEST_F(SettingsTest, SaysWhatCannotChangeWhileItRuns) {
   EXPECT_NE(unchangeable_difference(*one, *other).value_or("").find("daemon.outbox"), std::string::npos);
 }
 
+// docs/operations.md has one row per option; where this fails, the rows to put there are in the message.
+TEST_F(SettingsTest, TheDocumentationHasEveryOption) {
+  const std::string documentation = thin::test::content_of(PROJECT_FOLDER "/docs/operations.md");
+  Settings settings;
+  thin::OptionTable daemon, window;
+  settings.daemon.declare(daemon);
+  settings.window.declare(window);
+  for (const thin::OptionTable* table : {&daemon, &window})
+    for (const thin::Option& option : table->options()) {
+      const bool derived = option.default_value == "\"\"" || option.default_value == "unset";
+      std::string choices;
+      for (const std::string& choice : option.facts.choices) choices += (choices.empty() ? "; one of " : ", ") + choice;
+      const std::string row = "| `" + option.name + "` | " + (derived ? "" : "`" + option.default_value + "`") + " | " +
+                              option.facts.unit + " | " + option.facts.explanation + choices + " |\n";
+      EXPECT_NE(documentation.find(row), std::string::npos) << row;
+    }
+}
+
 TEST_F(SettingsTest, AMissingFileIsAConfigurationError) {
   const auto settings = read_settings(in_folder("nothing.toml"));
   ASSERT_FALSE(settings);

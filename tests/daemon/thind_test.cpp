@@ -283,7 +283,7 @@ TEST_F(ThindTest, AWriterWhoPausesWithTheFileOpenLosesNothing) {
   writing << whole.substr(0, 50) << std::flush;
   ASSERT_TRUE(wait_until([&] { return site_.log_says("is incomplete"); }));
   writing << whole.substr(50) << std::flush;
-  ASSERT_TRUE(wait_until([&] { return there("outbox/" + kWindow); }));
+  ASSERT_TRUE(wait_until([&] { return there("archive/a.txt"); }));
   EXPECT_EQ(content_of(site_.path("archive/a.txt")), whole);
   EXPECT_TRUE(site_.consistent());
 }
@@ -342,13 +342,13 @@ TEST_F(ThindTest, WhatIsNoFileStaysAndBlocksNothing) {
 
 TEST_F(ThindTest, AwkwardNamesAreNamesToo) {
   for (const std::string& name : {std::string("line\nbreak"), std::string("\xff\xfe.bufr"), std::string("-rf"),
-                                 std::string("report.json"), std::string(250, 'n'), std::string("a b'\"$(x)")})
+                                  std::string("report.json"), std::string(250, 'n'), std::string("a b'\"$(x)")})
     site_.deliver(name.substr(0, 250), soundings(static_cast<int>(name.size())));
   site_.daemon["log_format"] = "\"json\"";
   EXPECT_EQ(site_.run_once(), 0);
   EXPECT_EQ(site_.published(), 6);
   EXPECT_EQ(files_below(site_.path("archive")).size(), 6U);
-  EXPECT_EQ(files_below(site_.path("outbox/" + kWindow)).size(), 6U + 1) << "six outputs and the report";
+  EXPECT_EQ(site_.outbox().size(), 6U + 2) << "six outputs, and the reports of two windows";
   std::istringstream lines(site_.log());
   for (std::string line; std::getline(lines, line);) EXPECT_TRUE(nlohmann::json::accept(line)) << line;
 }
@@ -497,9 +497,9 @@ TEST_F(ThindTest, SighupRefusesAWrongConfigurationAndSaysWhichLine) {
     daemon.signal(SIGHUP);
     return wait_until([&] { return site_.log_says(words); });
   };
-  EXPECT_TRUE(refused("quiet_secs = 1\n", "thind.toml:11:1: unknown key \"quiet_secs\""));
+  EXPECT_TRUE(refused("quiet_secs = 1\n", "thind.toml:10:1: unknown key \"quiet_secs\""));
   EXPECT_TRUE(refused("[thinning]\nfake_problem = 1\n", "a problem that only the worker sees"));
-  EXPECT_TRUE(refused("this is no TOML", "thind.toml:11:"));
+  EXPECT_TRUE(refused("this is no TOML", "thind.toml:10:"));
   site_.deliver("a.txt", soundings(0));
   EXPECT_TRUE(wait_until([&] { return there("outbox/" + kWindow); })) << "the old configuration holds";
   EXPECT_TRUE(site_.log_says("the old configuration holds until SIGHUP"));
@@ -561,6 +561,17 @@ TEST_F(ThindTest, AnInboxOnAnotherFileSystem) {
   EXPECT_FALSE(std::filesystem::exists(inbox / "a.txt"));
   EXPECT_TRUE(site_.consistent());
   std::filesystem::remove_all(inbox);
+}
+
+TEST_F(ThindTest, TheArchiveIsKeptAsLongAsConfigured) {
+  site_.daemon["keep_archive_days"] = "1";
+  site_.deliver("a.txt", soundings(0));
+  EXPECT_EQ(site_.run_once(), 0);
+  EXPECT_TRUE(there("archive/a.txt"));
+  site_.daemon["keep_archive_days"] = "0";
+  EXPECT_EQ(site_.run_once(), 0);
+  EXPECT_FALSE(there("archive/a.txt"));
+  EXPECT_TRUE(site_.consistent());
 }
 
 TEST_F(ThindTest, ManyFilesThroughKillsComeOutAsWithoutThem) {

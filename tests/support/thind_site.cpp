@@ -135,6 +135,11 @@ int Site::file_count(const char* key) const {
   return now.is_object() && now.contains("files") ? now["files"].value(key, -1) : -1;
 }
 
+int Site::in_state(const std::string& state) const {
+  const nlohmann::json now = status();
+  return now.is_object() && now.contains("files") ? now["files"]["in_state"].value(state, -1) : -1;
+}
+
 int Site::published() const {
   return file_count("published");
 }
@@ -147,7 +152,7 @@ int Site::pending() const {
 
 bool Site::consistent() const {
   const nlohmann::json now = status();
-  return now.is_object() && now["files"]["balanced"].get<bool>() && now["missing"].empty();
+  return now.is_object() && now.contains("files") && now["files"]["balanced"].get<bool>() && now["missing"].empty();
 }
 
 }  // namespace thin::test

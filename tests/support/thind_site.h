@@ -84,6 +84,7 @@ class Site {
   int published() const;
   int quarantined() const;
   int pending() const;
+  int in_state(const std::string& state) const;
   // Whether seen = published + quarantined + pending, and all pending files are there.
   bool consistent() const;
 
