@@ -35,7 +35,8 @@ inline TestSounding test_sounding(int seed) {
   sounding.latitude_deg = -60 + 0.5 * seed;
   sounding.longitude_deg = 100 + 0.25 * seed;
   sounding.second = seed % 60 + 0.125;
-  sounding.scan_line = 1 + seed / 30;
+  const int line = 1 + seed / 30;
+  sounding.scan_line = line;
   sounding.field_of_view = 1 + seed % 30;
   for (int channel = 1; channel <= 15; ++channel)
     sounding.slots.emplace_back(27 + channel, 200 + channel + 0.01 * (seed * 7 % 100));
@@ -100,7 +101,7 @@ inline void put_places(codes_handle* handle, const MessageShape& shape, const st
       {"fieldOfViewNumber", &TestSounding::field_of_view},
   };
   for (const auto& [name, member] : columns)
-    put_column(handle, shape, name, 1, 1, soundings, [&](const TestSounding& s) { return s.*member; });
+    put_column(handle, shape, name, 1, 1, soundings, [place = member](const TestSounding& s) { return s.*place; });
 }
 
 inline void put_slots(codes_handle* handle, const MessageShape& shape, const std::vector<TestSounding>& soundings) {
