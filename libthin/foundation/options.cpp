@@ -35,6 +35,7 @@ std::string written(const std::string& value) {
 template <class T>
 std::string written(const std::vector<T>& values) {
   std::vector<std::string> parts;
+  parts.reserve(values.size());
   for (const T& value : values) parts.push_back(written(value));
   return fmt::format("[{}]", fmt::join(parts, ", "));
 }
@@ -186,37 +187,37 @@ void OptionTable::add_option(std::string name, std::string type, OptionFacts fac
                       std::move(current_value)});
 }
 
-void OptionTable::add(std::string name, bool& field, OptionFacts facts) {
+void OptionTable::add(std::string name, bool& field, const OptionFacts& facts) {
   add_option(std::move(name), "boolean", facts, assigner(field, facts), writer(field));
 }
-void OptionTable::add(std::string name, int& field, OptionFacts facts) {
+void OptionTable::add(std::string name, int& field, const OptionFacts& facts) {
   add_option(std::move(name), "integer", facts, assigner(field, facts), writer(field));
 }
-void OptionTable::add(std::string name, std::int64_t& field, OptionFacts facts) {
+void OptionTable::add(std::string name, std::int64_t& field, const OptionFacts& facts) {
   add_option(std::move(name), "integer", facts, assigner(field, facts), writer(field));
 }
-void OptionTable::add(std::string name, double& field, OptionFacts facts) {
+void OptionTable::add(std::string name, double& field, const OptionFacts& facts) {
   add_option(std::move(name), "number", facts, assigner(field, facts), writer(field));
 }
-void OptionTable::add(std::string name, std::string& field, OptionFacts facts) {
+void OptionTable::add(std::string name, std::string& field, const OptionFacts& facts) {
   add_option(std::move(name), "text", facts, assigner(field, facts), writer(field));
 }
-void OptionTable::add(std::string name, std::optional<std::int64_t>& field, OptionFacts facts) {
+void OptionTable::add(std::string name, std::optional<std::int64_t>& field, const OptionFacts& facts) {
   add_option(std::move(name), "integer", facts, assigner(field, facts), writer(field));
 }
-void OptionTable::add(std::string name, std::optional<double>& field, OptionFacts facts) {
+void OptionTable::add(std::string name, std::optional<double>& field, const OptionFacts& facts) {
   add_option(std::move(name), "number", facts, assigner(field, facts), writer(field));
 }
-void OptionTable::add(std::string name, std::optional<std::string>& field, OptionFacts facts) {
+void OptionTable::add(std::string name, std::optional<std::string>& field, const OptionFacts& facts) {
   add_option(std::move(name), "text", facts, assigner(field, facts), writer(field));
 }
-void OptionTable::add(std::string name, std::vector<std::string>& field, OptionFacts facts) {
+void OptionTable::add(std::string name, std::vector<std::string>& field, const OptionFacts& facts) {
   add_option(std::move(name), "list of texts", facts, assigner(field, facts), writer(field));
 }
-void OptionTable::add(std::string name, std::vector<int>& field, OptionFacts facts) {
+void OptionTable::add(std::string name, std::vector<int>& field, const OptionFacts& facts) {
   add_option(std::move(name), "list of integers", facts, assigner(field, facts), writer(field));
 }
-void OptionTable::add(std::string name, std::vector<double>& field, OptionFacts facts) {
+void OptionTable::add(std::string name, std::vector<double>& field, const OptionFacts& facts) {
   add_option(std::move(name), "list of numbers", facts, assigner(field, facts), writer(field));
 }
 

@@ -48,25 +48,25 @@ struct Option {
 
 class OptionTable {
  public:
-  void add(std::string name, bool& field, OptionFacts facts);
-  void add(std::string name, int& field, OptionFacts facts);
-  void add(std::string name, std::int64_t& field, OptionFacts facts);
-  void add(std::string name, double& field, OptionFacts facts);
-  void add(std::string name, std::string& field, OptionFacts facts);
-  void add(std::string name, std::optional<std::int64_t>& field, OptionFacts facts);
-  void add(std::string name, std::optional<double>& field, OptionFacts facts);
-  void add(std::string name, std::optional<std::string>& field, OptionFacts facts);
-  void add(std::string name, std::vector<std::string>& field, OptionFacts facts);
-  void add(std::string name, std::vector<int>& field, OptionFacts facts);
-  void add(std::string name, std::vector<double>& field, OptionFacts facts);
+  void add(std::string name, bool& field, const OptionFacts& facts);
+  void add(std::string name, int& field, const OptionFacts& facts);
+  void add(std::string name, std::int64_t& field, const OptionFacts& facts);
+  void add(std::string name, double& field, const OptionFacts& facts);
+  void add(std::string name, std::string& field, const OptionFacts& facts);
+  void add(std::string name, std::optional<std::int64_t>& field, const OptionFacts& facts);
+  void add(std::string name, std::optional<double>& field, const OptionFacts& facts);
+  void add(std::string name, std::optional<std::string>& field, const OptionFacts& facts);
+  void add(std::string name, std::vector<std::string>& field, const OptionFacts& facts);
+  void add(std::string name, std::vector<int>& field, const OptionFacts& facts);
+  void add(std::string name, std::vector<double>& field, const OptionFacts& facts);
 
   // An enumeration, written in the configuration by the names given here.
   template <class Enumeration>
-  void add_choice(std::string name, Enumeration& field, const std::vector<std::pair<std::string, Enumeration>>& names,
-                  OptionFacts facts) {
+  void add_choice(const std::string& name, Enumeration& field,
+                  const std::vector<std::pair<std::string, Enumeration>>& names, OptionFacts facts) {
     for (const auto& entry : names) facts.choices.push_back(entry.first);
     add_text_option(
-        std::move(name), std::move(facts),
+        name, std::move(facts),
         [&field, names](const std::string& text) {
           for (const auto& [choice, value] : names)
             if (choice == text) field = value;

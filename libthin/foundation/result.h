@@ -84,7 +84,7 @@ class [[nodiscard]] Result<void> {
   explicit operator bool() const { return ok(); }
 
   // REQUIRES: !ok()
-  const Error& error() const { return assert(error_), *error_; }
+  const Error& error() const { return assert(error_), error_.value(); }
 
  private:
   std::optional<Error> error_;

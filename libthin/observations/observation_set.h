@@ -32,7 +32,7 @@ struct SourceReference {
   std::uint32_t file = 0;
   std::uint32_t message = 0;
   std::uint32_t subset = 0;
-  auto operator<=>(const SourceReference&) const = default;
+  auto operator<=>(const SourceReference&) const = default;  // NOLINT(modernize-use-nullptr): mistaken by clang-tidy 14
 };
 
 constexpr std::int32_t kUnknownNumber = -1;

@@ -105,7 +105,7 @@ void subtract_first_guess(ObservationSet& set, const FirstGuessOptions& options,
       subtract_scan_position_means(set, options.minimum_lines, notes);
       set.value_kind = ValueKind::innovation;
     } else {
-      notes.push_back("the values are not innovations: brightness temperatures are thinned without a first guess");
+      notes.emplace_back("the values are not innovations: brightness temperatures are thinned without a first guess");
     }
   }
   subtract_large_means(set, notes);

@@ -66,6 +66,7 @@ Result<std::vector<std::size_t>> places_of(const std::vector<int>& wanted, const
 
 Error no_channel_left(const std::vector<DeadChannel>& dead) {
   std::vector<std::string> facts;
+  facts.reserve(dead.size());
   for (const DeadChannel& channel : dead)
     facts.push_back(fmt::format("{} on {}", channel.channel, platform_name(channel.platform)));
   return {ErrorKind::input,
