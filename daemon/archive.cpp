@@ -11,7 +11,7 @@ thin::Result<int> purge_archive(const std::string& folder, std::int64_t before_m
   if (!names) return names.error();
   int removed = 0;
   for (const std::string& name : *names) {
-    const std::string path = folder + "/" + name;
+    const std::string path = path_in(folder, name);
     struct stat facts {};
     if (::lstat(path.c_str(), &facts) != 0 || !S_ISREG(facts.st_mode)) continue;
     // The time of modification is the sender's; that of the last change is when the file was moved here.

@@ -140,6 +140,12 @@ Result<std::string> sha256_of_beginning(const std::string& path, std::int64_t by
   return digest.hexadecimal();
 }
 
+std::string path_in(const std::string& folder, std::string_view name) {
+  std::string path;
+  path.reserve(folder.size() + 1 + name.size());
+  return path.append(folder).append("/").append(name);
+}
+
 bool exists(const std::string& path) {
   struct stat facts {};
   return ::lstat(path.c_str(), &facts) == 0;
@@ -175,7 +181,7 @@ Result<void> sync_tree(const std::string& path) {
     auto names = list_folder(path);
     if (!names) return names.error();
     for (const std::string& name : *names) {
-      if (auto synced = sync_tree(path + "/" + name); !synced) return synced;
+      if (auto synced = sync_tree(path_in(path, name)); !synced) return synced;
     }
   }
   return sync_path(path);
@@ -239,7 +245,7 @@ Result<std::string> place_file(const std::string& from, const std::string& folde
                                const std::string& hash) {
   const bool at_hand = exists(from);
   for (const std::string& candidate : {name, with_hash(name, hash), hash}) {
-    const std::string target = folder + "/" + candidate;
+    const std::string target = path_in(folder, candidate);
     if (exists(target)) {
       auto found = sha256_of_file(target);
       if (!found || *found != hash) continue;
@@ -281,7 +287,7 @@ Result<bool> same_content(const std::string& one, const std::string& other) {
   if (!second) return second.error();
   if (*first != *second) return false;
   for (const std::string& name : *first) {
-    auto same = same_content(one + "/" + name, other + "/" + name);
+    auto same = same_content(path_in(one, name), path_in(other, name));
     if (!same || !*same) return same;
   }
   return true;

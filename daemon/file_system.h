@@ -23,6 +23,9 @@ Result<std::string> sha256_of_file(const std::string& path);
 // Of the first `bytes` of it, or of all where it is shorter.
 Result<std::string> sha256_of_beginning(const std::string& path, std::int64_t bytes);
 
+// "folder/name".
+std::string path_in(const std::string& folder, std::string_view name);
+
 // Of the entry itself, following no link.
 bool exists(const std::string& path);
 

@@ -33,7 +33,7 @@ thin::Result<void> Folders::remove_unfinished() const {
       if (!name.starts_with(kUnfinishedPrefix)) continue;
       // In the inbox a sender may use such names too; ours are there only while a file is given back.
       if (folder == inbox && name.size() != 5 + 32) continue;
-      if (auto removed = remove_tree(folder + "/" + name); !removed) return removed;
+      if (auto removed = remove_tree(path_in(folder, name)); !removed) return removed;
     }
   }
   return {};

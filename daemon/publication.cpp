@@ -24,7 +24,7 @@ Result<void> validate_outputs(const std::string& folder, const WindowReport& rep
   bool report_there = false;
   for (const std::string& name : *names) {
     struct stat facts {};
-    const bool is_file = ::lstat((folder + "/" + name).c_str(), &facts) == 0 && S_ISREG(facts.st_mode);
+    const bool is_file = ::lstat(path_in(folder, name).c_str(), &facts) == 0 && S_ISREG(facts.st_mode);
     if (!is_file) return not_as_reported(name + " is no file");
     if (name == report.report) {
       report_there = true;
@@ -71,10 +71,10 @@ Result<std::string> publish_file(const std::string& folder, const std::string& o
   if (auto synced = sync_path(from); !synced) return synced.error();
   if (auto made = make_folder(reports); !made) return made.error();
   for (const std::string& name : {output, with_hash(output, *hash), *hash}) {
-    const std::string target = outbox + "/" + name;
+    const std::string target = path_in(outbox, name);
     const auto there = exists(target) ? sha256_of_file(target) : Result<std::string>(*hash);
     if (!there || *there != *hash) continue;
-    if (auto written = write_file(reports + "/" + name + ".json", *text); !written) return written.error();
+    if (auto written = write_file(path_in(reports, name).append(".json"), *text); !written) return written.error();
     auto moved = move_to_free(from, target);
     if (!moved) return moved.error();
     if (auto removed = remove_tree(folder); !removed) return removed.error();

@@ -1,5 +1,6 @@
 #include "daemon/settings.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <filesystem>
 #include <sstream>
 #include <thread>
+#include <tuple>
 
 #include "daemon/clock.h"
 #include "daemon/file_system.h"
@@ -24,12 +26,12 @@ namespace fs = std::filesystem;
 std::string find_worker() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  const std::string beside = (program.parent_path() / "thin").string();
+  std::string beside = (program.parent_path() / "thin").string();
   if (!error && ::access(beside.c_str(), X_OK) == 0) return beside;
   const char* search_path = std::getenv("PATH");
   std::istringstream folders(search_path ? search_path : "");
   for (std::string folder; std::getline(folders, folder, ':');) {
-    const std::string candidate = folder + "/thin";
+    std::string candidate = folder + "/thin";
     if (!folder.empty() && ::access(candidate.c_str(), X_OK) == 0) return candidate;
   }
   return "";
@@ -211,8 +213,7 @@ std::optional<std::string> unchangeable_difference(const Settings& running, cons
       {"late", a.late, b.late},          {"state", a.state, b.state}};
   for (const auto& [name, old_path, new_path] : folders)
     if (old_path != new_path)
-      return std::string("daemon.") + name + " can't change from " + old_path + " to " + new_path +
-             " while thind runs: restart it";
+      return fmt::format("daemon.{} can't change from {} to {} while thind runs: restart it", name, old_path, new_path);
   return std::nullopt;
 }
 

@@ -20,6 +20,7 @@ std::string label_of(const WindowRecord& window, const std::vector<Member>& memb
 
 std::vector<std::string> hashes_of(const std::vector<Member>& members) {
   std::vector<std::string> hashes;
+  hashes.reserve(members.size());
   for (const Member& member : members) hashes.push_back(member.file.hash);
   return hashes;
 }

@@ -19,7 +19,7 @@ struct Interval {
 // Windows lie side by side: [anchor + k length, anchor + (k + 1) length) for every whole k.
 // REQUIRES: length_ms > 0
 struct WindowGrid {
-  std::int64_t length_ms = 180 * 60'000;
+  std::int64_t length_ms = std::int64_t{180} * 60'000;
   std::int64_t anchor_ms = 0;
 };
 

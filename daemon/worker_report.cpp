@@ -52,7 +52,7 @@ Outcome outcome_of(const WorkerExit& exit, const std::string& said) {
 
 // Fills in what all reports have in common; returns the body where the worker says that it is done.
 Json read_common(WorkerExit exit, WorkerReport& report) {
-  const Json body = parse_object(exit.output);
+  Json body = parse_object(exit.output);
   report.outcome = outcome_of(exit, text_at(body, "outcome"));
   report.reason = text_at(body, "reason");
   if (report.outcome != Outcome::done && report.reason.empty()) report.reason = last_line(exit.last_errors);
