@@ -55,9 +55,8 @@ int ingest(const Arguments& arguments) {
   auto began = std::chrono::steady_clock::now();
   StepSeconds seconds;
   const Result<ReadObservations> contents = read_observations(arguments.input);
-  if (!contents) return fail(contents.error());
-  if (contents->observations.size() == 0)
-    return fail({ErrorKind::input, arguments.input + " holds no observation that can be used"});
+  if (!contents) return fail(without_path(contents.error(), arguments.input));
+  if (contents->observations.size() == 0) return fail({ErrorKind::input, "it holds no observation that can be used"});
   seconds.emplace_back("read", lap(began));
 
   const std::string temporary = arguments.output + ".tmp";

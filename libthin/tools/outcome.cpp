@@ -38,6 +38,12 @@ int fail(const Error& error) {
   return exit_code(error.kind);
 }
 
+Error without_path(Error error, const std::string& path) {
+  const std::string prefix = path + ": ";
+  if (error.message.starts_with(prefix)) error.message.erase(0, prefix.size());
+  return error;
+}
+
 OutcomeJson seconds_json(const StepSeconds& seconds) {
   OutcomeJson json = OutcomeJson::object();
   for (const auto& [step, value] : seconds) json[step] = value;

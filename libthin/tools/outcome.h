@@ -4,6 +4,7 @@
 // good one, "reason". The exit code says the same (docs/operations.md).
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "libthin/foundation/result.h"
 #include "libthin/tools/window_pipeline.h"
@@ -17,6 +18,10 @@ void print_outcome(const OutcomeJson& outcome);
 // Prints {"outcome": "unusable" | "incomplete" | "temporary" | "configuration" | "error", "reason": ...} and, for
 // people, the reason on standard error. Returns the exit code.
 int fail(const Error& error);
+
+// The error of a file without the path in front, for those who know the file by another name: the daemon's spool, and
+// reports, which must not depend on where the files lay.
+Error without_path(Error error, const std::string& path);
 
 OutcomeJson seconds_json(const StepSeconds& seconds);
 

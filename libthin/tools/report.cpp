@@ -97,7 +97,7 @@ std::string report_json(const WindowOutcome& outcome, const Settings& settings) 
 
 std::string report_table(const WindowOutcome& outcome) {
   std::string table = fmt::format("{:<14} {:>12} {:>9} {:>9} {:>12} {:>10} {:>9}\n", "satellite", "observations",
-                                  "screened", "retained", "E, K^2", "rms, K", "E lost, %");
+                                  "screened", "retained", "E, K^2", "rms, K", "lost, %");
   std::size_t observations = 0, prepared = 0;
   for (const auto& [platform, tally] : outcome.prepared.platforms) {
     observations += tally.observations;
@@ -111,7 +111,7 @@ std::string report_table(const WindowOutcome& outcome) {
   table += table_row("all", observations, observations - prepared, outcome.retained.size(), outcome.error.whole);
   table += fmt::format(
       "E: mean squared difference of the Gaussian estimates (h = {:g} km) from the prepared and the "
-      "retained, over channels {}\n",
+      "retained, over channels {}; lost: its share of the E of retaining nothing\n",
       outcome.error.bandwidth_km, fmt::join(outcome.prepared.observations.channels, " "));
   table += "seconds:";
   for (const auto& [step, seconds] : outcome.seconds) table += fmt::format("  {} {:.3f}", step, seconds);

@@ -71,9 +71,9 @@ Result<Inputs> read_inputs(const std::vector<std::string>& paths) {
       inputs.files.push_back({name, path, std::move(*contents)});
       continue;
     }
-    const Error error =
-        contents ? Error{ErrorKind::input, "it holds no observation that can be used"} : contents.error();
-    if (error.kind == ErrorKind::temporary) return error;
+    const Error error = contents ? Error{ErrorKind::input, "it holds no observation that can be used"}
+                                 : without_path(contents.error(), path);
+    if (error.kind == ErrorKind::temporary) return contents.error();
     spdlog::error("{}: {}", path, error.message);
     inputs.refused.push_back({name, error.message});
   }

@@ -126,6 +126,7 @@ TEST_F(StepsTest, IngestSaysWhatIsWrong) {
   const Outcome refused = call({"ingest", "--input", bad_, "--output", scratch_.path("s.nc")});
   EXPECT_EQ(refused.exit_status, 3);
   EXPECT_EQ(Json::parse(refused.output)["outcome"], "unusable");
+  EXPECT_EQ(Json::parse(refused.output)["reason"].get<std::string>().find(bad_), std::string::npos) << refused.output;
   EXPECT_FALSE(std::filesystem::exists(scratch_.path("s.nc")));
 
   test::ByteVector cut = test::read_bytes(good_);
