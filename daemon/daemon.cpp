@@ -145,7 +145,7 @@ Closing Daemon::closing() {
   closing.now_ms = wall_clock_ms();
   closing.scanned_ms = work_->scanned_ms.value_or(closing.now_ms);
   closing.oldest_undecided_ms = work_->intake.oldest_undecided_ms();
-  closing.close_all = once_ && work_->intake.drained() && work_->journal.to_ingest().empty();
+  closing.close_all = once_ && work_->intake.drained() && work_->journal.ingest_counts(0).waiting == 0;
   return closing;
 }
 

@@ -119,7 +119,10 @@ void Pipeline::give_up_ingest(const FileRecord& file, const std::string& reason,
   if (file.state != FileState::published) return quarantine_file(journal_, file, reason, report);
   // Its data is out; only a later version of its windows wanted it again.
   log(Level::error, file.name + " " + reason + "; it is left out of later versions of its windows");
-  journal_.leave_unfinished_windows(file.hash);
+  journal_.atomically([&] {
+    journal_.excuse_file_attempt(file.hash, 0);
+    journal_.leave_unfinished_windows(file.hash);
+  });
 }
 
 }  // namespace thind

@@ -73,6 +73,11 @@ std::vector<int> split(const std::string& text) {
 
 #define SELECT_FILES "SELECT " FILE_COLUMNS " FROM files f "
 
+#define TO_INGEST                                                                                                 \
+  "(state = 'seen' OR (staged = 0 AND state IN ('staged', 'published') AND EXISTS (SELECT 1 FROM window_files m " \
+  "JOIN windows w ON w.id = m.window WHERE m.hash = f.hash AND m.role = 'member' AND w.state IN ('open', "        \
+  "'probing'))))"
+
 FileRecord file_of(const Row& row) {
   FileRecord file;
   file.hash = row.text(0);
@@ -184,14 +189,30 @@ std::vector<FileRecord> Journal::unsettled() {
   return files;
 }
 
-std::vector<FileRecord> Journal::to_ingest() {
+std::vector<FileRecord> Journal::to_ingest(std::int64_t now_ms, std::size_t limit) {
   std::vector<FileRecord> files;
-  database_.query(SELECT_FILES
-                  "WHERE state = 'seen' OR (staged = 0 AND state IN ('staged', 'published') AND EXISTS (SELECT 1 FROM "
-                  "window_files m JOIN windows w ON w.id = m.window WHERE m.hash = f.hash AND m.role = 'member' AND "
-                  "w.state IN ('open', 'probing'))) ORDER BY seen_ms, name, hash",
-                  [&](const Row& row) { files.push_back(file_of(row)); });
+  database_.query(
+      SELECT_FILES "WHERE " TO_INGEST " AND running = 0 AND not_before_ms <= ? ORDER BY seen_ms, name, hash LIMIT ?",
+      [&](const Row& row) { files.push_back(file_of(row)); }, now_ms, static_cast<std::int64_t>(limit));
   return files;
+}
+
+std::optional<std::int64_t> Journal::next_ingest_ms() {
+  std::optional<std::int64_t> next;
+  database_.query("SELECT min(not_before_ms) FROM files f WHERE " TO_INGEST " AND running = 0",
+                  [&](const Row& row) { next = row.optional_integer(0); });
+  return next;
+}
+
+Journal::IngestCounts Journal::ingest_counts(std::int64_t max_deferrals) {
+  IngestCounts counts;
+  database_.query(
+      "SELECT count(*), coalesce(sum(deferrals < ?), 0) FROM files f WHERE " TO_INGEST,
+      [&](const Row& row) {
+        counts = {row.integer(0), row.integer(1)};
+      },
+      max_deferrals);
+  return counts;
 }
 
 std::optional<std::int64_t> Journal::oldest_undecided_ms() {
@@ -353,6 +374,13 @@ void Journal::add_member(std::int64_t window, const std::string& hash, std::int6
 
 void Journal::add_dropped(std::int64_t window, const std::string& hash) {
   database_.run("INSERT OR IGNORE INTO window_files (window, hash, role) VALUES (?, ?, 'dropped')", window, hash);
+}
+
+bool Journal::all_members_staged(std::int64_t window) {
+  return database_.number(
+             "SELECT count(*) FROM window_files m JOIN files f ON f.hash = m.hash WHERE m.window = ? AND "
+             "m.role = 'member' AND f.staged = 0",
+             window) == 0;
 }
 
 bool Journal::has_unfinished_before(const WindowRecord& window) {

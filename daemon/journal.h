@@ -139,8 +139,15 @@ class Journal {
   std::vector<FileRecord> files(FileState state);
   // Decided, in no unfinished window, and something of them is still in the spool or in staged/.
   std::vector<FileRecord> unsettled();
-  // For `thin ingest`, oldest first: seen, or not staged and in an open window.
-  std::vector<FileRecord> to_ingest();
+  // For `thin ingest`: seen, or not staged and in an open window; no worker at it. Those that are due, oldest first.
+  std::vector<FileRecord> to_ingest(std::int64_t now_ms, std::size_t limit);
+  // When the next of them is due, which may be in the past; nothing where there is none.
+  std::optional<std::int64_t> next_ingest_ms();
+  struct IngestCounts {
+    std::int64_t waiting = 0;  // or at work
+    std::int64_t hopeful = 0;  // of these, put off fewer than max_deferrals times
+  };
+  IngestCounts ingest_counts(std::int64_t max_deferrals);
   // When the first of the seen and the incomplete was seen.
   std::optional<std::int64_t> oldest_undecided_ms();
   FileCounts counts();
@@ -176,6 +183,7 @@ class Journal {
   void add_member(std::int64_t window, const std::string& hash, std::int64_t now_ms);
   // The file is late for the window and stays out of it.
   void add_dropped(std::int64_t window, const std::string& hash);
+  bool all_members_staged(std::int64_t window);
   // Of any kind but file: whether an earlier output for the interval is still to come.
   bool has_unfinished_before(const WindowRecord& window);
   std::vector<Member> members(std::int64_t window);  // by name, then hash

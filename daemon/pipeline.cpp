@@ -10,11 +10,10 @@
 namespace thind {
 
 Result<void> Pipeline::start_due(const Closing& closing) {
-  for (const FileRecord& file : journal_.to_ingest()) {
-    if (!has_free_worker()) return {};
-    if (file.not_before_ms > closing.now_ms || is_running(Job::Kind::ingest, file.hash, 0)) continue;
+  const auto most = static_cast<std::size_t>(settings_.daemon.parallel_workers);
+  const std::size_t free_workers = most - std::min(workers_.running(), most);  // after a reload there may be more
+  for (const FileRecord& file : journal_.to_ingest(closing.now_ms, free_workers))
     if (auto started = start_ingest(file); !started) return started;
-  }
   for (const WindowRecord& window : journal_.unfinished_windows()) {
     if (!has_free_worker()) return {};
     if (window.running || !is_due(window, closing)) continue;
@@ -75,13 +74,12 @@ Result<void> Pipeline::settle() {
 std::optional<std::int64_t> Pipeline::next_due_ms(const Closing& closing) {
   std::optional<std::int64_t> next;
   const auto consider = [&](std::int64_t time_ms) { next = std::min(next.value_or(time_ms), time_ms); };
-  for (const FileRecord& file : journal_.to_ingest())
-    if (!is_running(Job::Kind::ingest, file.hash, 0)) consider(file.not_before_ms);
+  if (const auto ingest_ms = journal_.next_ingest_ms()) consider(*ingest_ms);
   for (const WindowRecord& window : journal_.unfinished_windows()) {
     if (window.running) continue;
     std::int64_t time_ms = window.not_before_ms;
     if (window.state == WindowState::open && !closing.close_all)
-      time_ms = std::max(time_ms, closing_time_of(window, journal_.members(window.id), closing));
+      time_ms = std::max(time_ms, closing_time_of(window, closing));
     // A window that is over its time waits for an event: the decision of a file, the end of an earlier version.
     if (time_ms > closing.now_ms) consider(time_ms);
   }
@@ -90,12 +88,12 @@ std::optional<std::int64_t> Pipeline::next_due_ms(const Closing& closing) {
 
 bool Pipeline::has_hopeful_work() {
   const int limit = settings_.daemon.max_attempts;
-  const auto files = journal_.to_ingest();
+  const auto files = journal_.ingest_counts(limit);
+  if (files.waiting > 0) return files.hopeful > 0;
   const auto windows = journal_.unfinished_windows();
-  return std::any_of(files.begin(), files.end(), [&](const FileRecord& file) { return file.deferrals < limit; }) ||
-         (files.empty() && std::any_of(windows.begin(), windows.end(), [&](const WindowRecord& window) {
-            return window.deferrals < limit && !journal_.has_unfinished_before(window);
-          }));
+  return std::any_of(windows.begin(), windows.end(), [&](const WindowRecord& window) {
+    return window.deferrals < limit && !journal_.has_unfinished_before(window);
+  });
 }
 
 Result<Pipeline::Job> Pipeline::prepare(Job job) const {
@@ -160,13 +158,6 @@ Result<void> Pipeline::write_plan(const Job& job, const WindowRecord& window,
 std::int64_t Pipeline::retry_at(std::int64_t vain_attempts) const {
   const auto doublings = std::clamp<std::int64_t>(vain_attempts, 0, 5);
   return wall_clock_ms() + milliseconds(settings_.daemon.retry_seconds) * (std::int64_t{1} << doublings);
-}
-
-bool Pipeline::is_running(Job::Kind kind, const std::string& hash, std::int64_t window) const {
-  return std::any_of(jobs_.begin(), jobs_.end(), [&](const auto& entry) {
-    const Job& job = entry.second;
-    return job.kind == kind && job.hash == hash && job.window == window;
-  });
 }
 
 bool Pipeline::has_free_worker() const {

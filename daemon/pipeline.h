@@ -72,8 +72,7 @@ class Pipeline {
   Result<void> publish(const WindowRecord& window, const Job& job, const WindowReport& report);
   void fail_window(const WindowRecord& window, const WorkerReport& report);
   bool is_due(const WindowRecord& window, const Closing& closing);
-  std::int64_t closing_time_of(const WindowRecord& window, const std::vector<Member>& members,
-                               const Closing& closing) const;
+  std::int64_t closing_time_of(const WindowRecord& window, const Closing& closing);
 
   // probing.cpp
   Result<void> start_probe(const WindowRecord& window);
@@ -90,7 +89,6 @@ class Pipeline {
   std::int64_t retry_at(std::int64_t vain_attempts) const;
   // At once where the daemon itself has stopped the worker, later where someone else did.
   std::int64_t retry_after_stop(const WorkerExit& exit, std::int64_t deferrals) const;
-  bool is_running(Job::Kind kind, const std::string& hash, std::int64_t window) const;
   bool has_free_worker() const;
 
   const Settings& settings_;

@@ -74,7 +74,8 @@ void Pipeline::remove_culprit(const WindowRecord& window, const FileRecord& file
 }
 
 void Pipeline::end_probing(const WindowRecord& window) {
-  // No worker ever failed at it and none of its files ends the daemon alone: the deaths that led here came from outside.
+  // No worker ever failed at it and none of its files ends the daemon alone: the deaths that led here came from
+  // outside.
   const bool only_interrupted = window.reason.empty();
   if (window.culprits > 0 || only_interrupted) return journal_.end_probing(window.id);
   const std::string label = window_name(window.interval, window.kind, window.version);

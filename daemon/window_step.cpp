@@ -27,12 +27,13 @@ std::vector<std::string> hashes_of(const std::vector<Member>& members) {
 
 }  // namespace
 
-std::int64_t Pipeline::closing_time_of(const WindowRecord& window, const std::vector<Member>& members,
-                                       const Closing& closing) const {
+std::int64_t Pipeline::closing_time_of(const WindowRecord& window, const Closing& closing) {
   if (window.kind == WindowKind::file) return 0;
   const std::set<int>& expected = settings_.window.expected_platform_numbers;
   std::set<int> there;
-  for (const Member& member : members) there.insert(member.file.platforms.begin(), member.file.platforms.end());
+  if (!expected.empty())
+    for (const Member& member : journal_.members(window.id))
+      there.insert(member.file.platforms.begin(), member.file.platforms.end());
   const bool all_there =
       !expected.empty() && std::includes(there.begin(), there.end(), expected.begin(), expected.end());
   const std::int64_t closing_ms =
@@ -43,11 +44,9 @@ std::int64_t Pipeline::closing_time_of(const WindowRecord& window, const std::ve
 bool Pipeline::is_due(const WindowRecord& window, const Closing& closing) {
   if (window.not_before_ms > closing.now_ms) return false;
   if (window.kind != WindowKind::file && journal_.has_unfinished_before(window)) return false;
-  const std::vector<Member> members = journal_.members(window.id);
-  if (!std::all_of(members.begin(), members.end(), [](const Member& member) { return member.file.staged; }))
-    return false;
+  if (!journal_.all_members_staged(window.id)) return false;
   if (window.kind == WindowKind::file || window.state == WindowState::probing || closing.close_all) return true;
-  return may_close(closing_time_of(window, members, closing), closing.now_ms, closing.oldest_undecided_ms);
+  return may_close(closing_time_of(window, closing), closing.now_ms, closing.oldest_undecided_ms);
 }
 
 Result<void> Pipeline::start_window(const WindowRecord& window) {

@@ -136,6 +136,20 @@ TEST_F(JournalTest, FailuresCountAndExcusesDoNot) {
   EXPECT_EQ(file.not_before_ms, 77);
 }
 
+TEST_F(JournalTest, HandsOutWhatIsDueAndNotAtWork) {
+  for (const char* hash : {"a", "b", "c"}) see(hash);
+  EXPECT_EQ(journal_->to_ingest(0, 2).size(), 2U);
+  journal_->begin_file_attempt("a");
+  journal_->begin_file_attempt("b");
+  journal_->excuse_file_attempt("b", 77);
+  ASSERT_EQ(journal_->to_ingest(76, 9).size(), 1U);
+  EXPECT_EQ(journal_->to_ingest(76, 9)[0].hash, "c");
+  EXPECT_EQ(journal_->to_ingest(77, 9).size(), 2U);
+  EXPECT_EQ(journal_->next_ingest_ms(), 0);
+  EXPECT_EQ(journal_->ingest_counts(1).waiting, 3);
+  EXPECT_EQ(journal_->ingest_counts(1).hopeful, 2);
+}
+
 TEST_F(JournalTest, GrowthIsTheSameDelivery) {
   see("short");
   journal_->record_incomplete("short", "no end");
@@ -150,11 +164,11 @@ TEST_F(JournalTest, StagedAgainWhenALaterVersionNeedsIt) {
   stage("a");
   journal_->record_outcome(window_with({"a"}), {.output = "one"}, 1);
   journal_->record_unstaged("a");
-  EXPECT_TRUE(journal_->to_ingest().empty());
+  EXPECT_TRUE(journal_->to_ingest(0, 9).empty());
   window_with({"a"});
-  ASSERT_EQ(journal_->to_ingest().size(), 1U);
+  ASSERT_EQ(journal_->to_ingest(0, 9).size(), 1U);
   journal_->record_staged("a", {});
-  EXPECT_TRUE(journal_->to_ingest().empty());
+  EXPECT_TRUE(journal_->to_ingest(0, 9).empty());
   EXPECT_EQ(state("a"), FileState::published);
 }
 

@@ -127,7 +127,8 @@ nlohmann::json Site::status() const {
   fs::remove(output);
   std::vector<std::string> arguments = {THIND_PROGRAM, "-c", path("thind.toml").string(), "--status", "--json"};
   Process(arguments, output).wait();
-  return nlohmann::json::parse(content_of(output), nullptr, false);
+  const nlohmann::json said = nlohmann::json::parse(content_of(output), nullptr, false);
+  return said.is_object() ? said : nlohmann::json();
 }
 
 int Site::file_count(const char* key) const {

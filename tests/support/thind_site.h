@@ -79,7 +79,7 @@ class Site {
   Process start(const std::vector<std::string>& options = {}) const;
   int run_once() const { return start({"--once"}).wait(); }
 
-  // thind --status --json.
+  // thind --status --json; null where there is no journal yet.
   nlohmann::json status() const;
   int published() const;
   int quarantined() const;
