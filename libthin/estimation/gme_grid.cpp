@@ -47,7 +47,7 @@ std::vector<Triangle> icosahedron_triangles() {
 // Gives each edge one midpoint, whichever of its two triangles asks first.
 class EdgeMidpoints {
  public:
-  explicit EdgeMidpoints(std::vector<Vector3>& vertices) : vertices_(vertices) {}
+  EdgeMidpoints(std::vector<Vector3>& vertices, std::size_t edges) : vertices_(vertices) { midpoints_.reserve(edges); }
 
   std::uint32_t of(std::uint32_t a, std::uint32_t b) {
     const std::uint64_t edge = (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
@@ -65,7 +65,7 @@ class EdgeMidpoints {
 };
 
 std::vector<Triangle> subdivided(const std::vector<Triangle>& triangles, std::vector<Vector3>& vertices) {
-  EdgeMidpoints midpoints(vertices);
+  EdgeMidpoints midpoints(vertices, triangles.size() * 3 / 2);
   std::vector<Triangle> finer;
   finer.reserve(triangles.size() * 4);
   for (const auto& [a, b, c] : triangles) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "libthin/foundation/kd_tree.h"
@@ -16,6 +17,29 @@ std::span<const double> coordinates(std::span<const Vector3> positions) {
   return {reinterpret_cast<const double*>(positions.data()), positions.size() * 3};
 }
 
+// The box around all observations, wider by the radius: beyond it nothing has a neighbour. A granule covers a small
+// part of the globe whose grid it is held against.
+class Reach {
+ public:
+  Reach(std::span<const Vector3> positions, double radius_km) {
+    for (const Vector3& p : positions) {
+      low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y), std::min(low_.z, p.z)};
+      high_ = {std::max(high_.x, p.x), std::max(high_.y, p.y), std::max(high_.z, p.z)};
+    }
+    const double margin_km = radius_km * (1 + 1e-9);
+    low_ = {low_.x - margin_km, low_.y - margin_km, low_.z - margin_km};
+    high_ = {high_.x + margin_km, high_.y + margin_km, high_.z + margin_km};
+  }
+  bool holds(const Vector3& p) const {
+    return p.x >= low_.x && p.x <= high_.x && p.y >= low_.y && p.y <= high_.y && p.z >= low_.z && p.z <= high_.z;
+  }
+
+ private:
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  Vector3 low_{kFar, kFar, kFar};
+  Vector3 high_{-kFar, -kFar, -kFar};
+};
+
 // The neighbourhoods of a run of consecutive evaluation points, found by one thread.
 struct Block {
   std::vector<std::uint32_t> counts;
@@ -25,11 +49,13 @@ struct Block {
 
 constexpr std::size_t kBlockSize = 256;
 
-Block search_block(const KdTree& tree, std::span<const Vector3> points, const GaussianFilter& filter) {
+Block search_block(const KdTree& tree, const Reach& reach, std::span<const Vector3> points,
+                   const GaussianFilter& filter) {
   Block block;
   std::vector<Neighbour> found;
   for (const Vector3& point : points) {
-    tree.radius_search(coordinates({&point, 1}), filter.radius_km(), found);
+    found.clear();
+    if (reach.holds(point)) tree.radius_search(coordinates({&point, 1}), filter.radius_km(), found);
     block.counts.push_back(static_cast<std::uint32_t>(found.size()));
     for (const Neighbour& neighbour : found) {
       block.observation.push_back(neighbour.index);
@@ -61,12 +87,13 @@ Result<NeighbourhoodTable> neighbourhood_table(std::span<const Vector3> evaluati
                                                std::span<const Vector3> observations, const GaussianFilter& filter,
                                                std::vector<std::uint32_t>* kept_points) {
   const KdTree tree(coordinates(observations), 3);
+  const Reach reach(observations, filter.radius_km());
   std::vector<Block> blocks((evaluation_points.size() + kBlockSize - 1) / kBlockSize);
   parallel_ranges(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::size_t first = i * kBlockSize;
       const std::size_t count = std::min(kBlockSize, evaluation_points.size() - first);
-      blocks[i] = search_block(tree, evaluation_points.subspan(first, count), filter);
+      blocks[i] = search_block(tree, reach, evaluation_points.subspan(first, count), filter);
     }
   });
 
