@@ -198,6 +198,28 @@ TEST_F(ThindTest, AFileThatKillsTheDaemonInItsWindowIsFound) {
   EXPECT_TRUE(site_.consistent());
 }
 
+// Deaths from outside, however many, are nobody's fault: the window is thinned in the end.
+TEST_F(ThindTest, AWindowInterruptedFromOutsideStaysInPlay) {
+  site_.daemon["max_interruptions"] = "2";
+  const std::string flag = site_.path("flag").string();
+  site_.deliver("a.txt", soundings(0));
+  site_.deliver("b.txt", soundings(1, 3, "do window wait-for " + flag + "\n"));
+  for (int death = 0; death < 2; ++death) {
+    const std::size_t log_before = site_.log().size();
+    Process daemon = site_.start();
+    ASSERT_TRUE(wait_until([&] {
+      return site_.log().find(" watches ", log_before) != std::string::npos &&
+             site_.status()["windows"][0]["attempts"] == 1;
+    }));
+    daemon.signal(SIGKILL);
+    daemon.wait();
+  }
+  write_content(flag, "");
+  EXPECT_EQ(site_.run_once(), 0);
+  EXPECT_EQ(site_.published(), 2);
+  EXPECT_EQ(site_.quarantined(), 0);
+}
+
 TEST_F(ThindTest, TemporaryTroubleNeverQuarantines) {
   const std::string flag = site_.path("flag").string();
   site_.deliver("a.txt", soundings(0, 3, "do ingest temporary-until " + flag + "\n"));
