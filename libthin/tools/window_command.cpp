@@ -35,7 +35,8 @@ Result<Plan> read_plan(const std::string& path) {
     plan.window = {optional_time(json, "begin_ms"), optional_time(json, "end_ms")};
     for (const OutcomeJson& entry : json.at("files")) {
       Result<ReadObservations> staged = read_staged(entry.at("staged").get<std::string>());
-      if (!staged) return staged.error();
+      // Staged by us and whole when it was: what has become of it is not the fault of the observations in it.
+      if (!staged) return Error{ErrorKind::internal, staged.error().message};
       plan.files.push_back(
           {entry.at("name").get<std::string>(), entry.at("original").get<std::string>(), std::move(*staged)});
     }

@@ -142,6 +142,14 @@ TEST_F(StepsTest, WindowRefusesABrokenPlan) {
   EXPECT_EQ(call({"window", "-c", configuration_, "--plan", plan, "--output", scratch_.path(".")}).exit_status, 2);
 }
 
+TEST_F(StepsTest, WindowFailsAtADamagedStagedFileAndDoesNotCallItEmpty) {
+  const Json plan = {{"files", {{{"name", "good.bufr"}, {"original", good_}, {"staged", bad_}}}}};
+  const std::string plan_path = write_text(scratch_.path("plan.json"), plan.dump());
+  const Outcome outcome = call({"window", "-c", configuration_, "--plan", plan_path, "--output", scratch_.path(".")});
+  EXPECT_EQ(outcome.exit_status, 1);
+  EXPECT_EQ(Json::parse(outcome.output)["outcome"], "error");
+}
+
 TEST_F(StepsTest, MethodsAreListedFromTheirDeclarations) {
   const Outcome all = call({"methods", "--json"});
   EXPECT_EQ(all.exit_status, 0);
