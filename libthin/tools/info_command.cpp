@@ -14,6 +14,7 @@
 #include "libthin/observations/platforms.h"
 #include "libthin/observations/time.h"
 #include "libthin/tools/commands.h"
+#include "libthin/tools/outcome.h"
 
 namespace thin {
 namespace {
@@ -130,11 +131,12 @@ int show_files(const std::vector<std::string>& paths, bool as_json) {
     if (as_json && summary)
       entry.update(json_of(*summary));
     else if (as_json)
-      entry["reason"] = summary.error().message;
+      entry["reason"] = without_path(summary.error(), path).message;
     else if (summary)
       std::fputs(table_of(path, *summary).c_str(), stdout);
     else
-      std::fputs(fmt::format("{}\n  cannot be used: {}\n", path, summary.error().message).c_str(), stdout);
+      std::fputs(fmt::format("{}\n  cannot be used: {}\n", path, without_path(summary.error(), path).message).c_str(),
+                 stdout);
     files.push_back(std::move(entry));
   }
   // Names and reasons may hold any bytes; JSON holds UTF-8 only.
@@ -151,7 +153,7 @@ void add_info_command(CLI::App& program, Action& action) {
     bool as_json = false;
   };
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = program.add_subcommand("info", "Show what is in files of soundings");
+  CLI::App* command = program.add_subcommand("info", "what is in files of soundings, or why they cannot be used");
   command->add_option("files", arguments->paths, "Files to look into")->required()->type_name("FILE");
   command->add_flag("--json", arguments->as_json, "One JSON array, one object a file");
   command->callback(
