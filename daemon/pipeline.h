@@ -70,6 +70,8 @@ class Pipeline {
   Result<void> start_window(const WindowRecord& window);
   Result<void> finish_window(const Job& job, WorkerExit exit);
   Result<void> publish(const WindowRecord& window, const Job& job, const WindowReport& report);
+  // The attempt was not of the window's own making: it does not count, and the window waits.
+  void put_off(const WindowRecord& window, const std::string& label, const WorkerReport& report);
   void fail_window(const WindowRecord& window, const WorkerReport& report);
   bool is_due(const WindowRecord& window, const Closing& closing);
   std::int64_t closing_time_of(const WindowRecord& window, const Closing& closing);

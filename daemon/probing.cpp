@@ -51,10 +51,8 @@ Result<void> Pipeline::finish_probe(const Job& job, WorkerExit exit) {
       return journal_.record_probe_passed(job.window, job.hash), Result<void>();
     case Outcome::temporary:
     case Outcome::configuration:
-      return journal_.excuse_window_attempt(job.window, retry_at(window->deferrals)), Result<void>();
     case Outcome::stopped:
-      journal_.excuse_window_attempt(job.window, retry_after_stop(report.exit, window->deferrals));
-      return {};
+      return put_off(*window, window_name(window->interval, window->kind, window->version), report), Result<void>();
     case Outcome::incomplete:
     case Outcome::failed:
       break;

@@ -90,17 +90,21 @@ Result<void> Pipeline::finish_window(const Job& job, WorkerExit exit) {
       return {};
     case Outcome::temporary:
     case Outcome::configuration:
-      log(Level::warning, fmt::format("{} waits: {}", label, report.reason), {{"window", label}});
-      return journal_.excuse_window_attempt(job.window, retry_at(window->deferrals)), Result<void>();
     case Outcome::stopped:
-      journal_.excuse_window_attempt(job.window, retry_after_stop(report.exit, window->deferrals));
-      return {};
+      return put_off(*window, label, report), Result<void>();
     case Outcome::incomplete:
     case Outcome::failed:
       break;
   }
   fail_window(*window, report);
   return {};
+}
+
+void Pipeline::put_off(const WindowRecord& window, const std::string& label, const WorkerReport& report) {
+  if (report.outcome == Outcome::stopped)
+    return journal_.excuse_window_attempt(window.id, retry_after_stop(report.exit, window.deferrals));
+  log(Level::warning, fmt::format("{} waits: {}", label, report.reason), {{"window", label}});
+  journal_.excuse_window_attempt(window.id, retry_at(window.deferrals));
 }
 
 Result<void> Pipeline::publish(const WindowRecord& window, const Job& job, const WindowReport& report) {

@@ -1,6 +1,6 @@
 // thin ingest: one file, decoded in a process of its own, staged for `thin window`.
 
-#include <chrono>
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -39,25 +39,17 @@ OutcomeJson staged_json(const ReadObservations& contents) {
   return json;
 }
 
-// Seconds since `began`, which becomes now.
-double lap(std::chrono::steady_clock::time_point& began) {
-  const auto now = std::chrono::steady_clock::now();
-  const double seconds = std::chrono::duration<double>(now - began).count();
-  began = now;
-  return seconds;
-}
-
 int ingest(const Arguments& arguments) {
   if (!arguments.configuration.empty())
     if (const Result<Settings> settings = read_settings(arguments.configuration); !settings)
       return fail(settings.error());
 
-  auto began = std::chrono::steady_clock::now();
   StepSeconds seconds;
+  StepClock clock(seconds);
   const Result<ReadObservations> contents = read_observations(arguments.input);
   if (!contents) return fail(without_path(contents.error(), arguments.input));
   if (contents->observations.size() == 0) return fail({ErrorKind::input, "it holds no observation that can be used"});
-  seconds.emplace_back("read", lap(began));
+  clock.finish("read");
 
   const std::string temporary = arguments.output + ".tmp";
   Result<void> staged = write_staged(temporary, *contents);
@@ -67,7 +59,7 @@ int ingest(const Arguments& arguments) {
     std::filesystem::remove(temporary, ignored);
     return fail(staged.error());
   }
-  seconds.emplace_back("stage", lap(began));
+  clock.finish("stage");
 
   OutcomeJson outcome = staged_json(*contents);
   outcome["seconds"] = seconds_json(seconds);

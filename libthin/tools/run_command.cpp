@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <chrono>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -104,15 +103,16 @@ Result<int> run(const Arguments& arguments) {
   fs::create_directories(arguments.output, failed);
   if (failed) return system_error("create the directory", arguments.output, failed.value());
 
-  const auto began = std::chrono::steady_clock::now();
+  StepSeconds seconds;
+  StepClock clock(seconds);
   Result<Inputs> inputs = read_inputs(arguments.files);
   if (!inputs) return inputs.error();
-  const double read_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  clock.finish("read");
   const bool some_refused = !inputs->refused.empty();
   Result<WindowOutcome> outcome =
       thin_window(std::move(inputs->files), std::move(inputs->refused), *window, *settings, arguments.output);
   if (!outcome) return outcome.error();
-  outcome->seconds.insert(outcome->seconds.begin(), {"read", read_seconds});
+  outcome->seconds.insert(outcome->seconds.begin(), seconds.begin(), seconds.end());
   print(*outcome, *settings, arguments.as_json);
   return some_refused ? exit_code(ErrorKind::input) : 0;
 }

@@ -221,7 +221,8 @@ int synthesise(const SynthArguments& arguments) {
 }  // namespace
 
 void add_synth_command(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("synth", "realistic AMSU-A soundings as BUFR files, deterministic by seed");
+  CLI::App* command =
+      program.add_subcommand("synth", "realistic AMSU-A soundings as BUFR files, deterministic by seed");
   const auto arguments = std::make_shared<SynthArguments>();
   command->add_option("-o,--output", arguments->output_folder, "Folder to write to; made where it does not exist")
       ->required();

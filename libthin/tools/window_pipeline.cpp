@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <chrono>
 
 #include "libthin/formats/atomic_file.h"
 #include "libthin/tools/report.h"
@@ -14,21 +13,6 @@ namespace {
 
 // Of the filter that the report's error is taken with, for methods that have none of their own.
 constexpr double kReportBandwidthKm = 100;
-
-// Wall-clock seconds of the steps, one after the other.
-class StepClock {
- public:
-  explicit StepClock(StepSeconds& seconds) : seconds_(seconds) {}
-  void finish(const std::string& step) {
-    const auto now = std::chrono::steady_clock::now();
-    seconds_.emplace_back(step, std::chrono::duration<double>(now - began_).count());
-    began_ = now;
-  }
-
- private:
-  StepSeconds& seconds_;
-  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
-};
 
 // All observations in one set; source.file is the place of the file in `files`.
 ObservationSet merged(const std::vector<WindowFile>& files) {

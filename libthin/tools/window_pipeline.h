@@ -10,12 +10,10 @@
 #include "libthin/formats/observation_file.h"
 #include "libthin/preparation/preparation.h"
 #include "libthin/tools/settings.h"
+#include "libthin/tools/step_clock.h"
 #include "libthin/tools/thinned_error.h"
 
 namespace thin {
-
-// Wall-clock seconds by step, in the order of the steps.
-using StepSeconds = std::vector<std::pair<std::string, double>>;
 
 struct WindowFile {
   std::string name;           // of the output, in the output directory; different for each file
