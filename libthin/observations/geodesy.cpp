@@ -29,6 +29,8 @@ GeodeticPosition geodetic(const Vector3& position_km) {
   return {latitude_deg, normalised_longitude_deg(longitude_deg), height_m / 1000};
 }
 
-double chord_km(const Vector3& a, const Vector3& b) { return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z); }
+double chord_km(const Vector3& a, const Vector3& b) {
+  return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+}
 
 }  // namespace thin

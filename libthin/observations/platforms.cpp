@@ -8,10 +8,10 @@ namespace thin {
 namespace {
 
 constexpr std::pair<std::int32_t, const char*> kPlatforms[] = {
-    {3, "Metop-B"},   {4, "Metop-A"},   {5, "Metop-C"},   {200, "NOAA-8"},  {201, "NOAA-9"},  {202, "NOAA-10"},
-    {203, "NOAA-11"}, {204, "NOAA-12"}, {205, "NOAA-14"}, {206, "NOAA-15"}, {207, "NOAA-16"}, {208, "NOAA-17"},
-    {209, "NOAA-18"}, {223, "NOAA-19"}, {224, "Suomi-NPP"}, {225, "NOAA-20"}, {226, "NOAA-21"}, {783, "Terra"},
-    {784, "Aqua"},
+    {3, "Metop-B"},   {4, "Metop-A"},   {5, "Metop-C"},   {200, "NOAA-8"},  {201, "NOAA-9"},
+    {202, "NOAA-10"}, {203, "NOAA-11"}, {204, "NOAA-12"}, {205, "NOAA-14"}, {206, "NOAA-15"},
+    {207, "NOAA-16"}, {208, "NOAA-17"}, {209, "NOAA-18"}, {223, "NOAA-19"}, {224, "Suomi-NPP"},
+    {225, "NOAA-20"}, {226, "NOAA-21"}, {783, "Terra"},   {784, "Aqua"},
 };
 
 }  // namespace

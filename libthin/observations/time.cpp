@@ -43,7 +43,8 @@ std::string to_iso8601(std::int64_t time_ms) {
   const auto whole = static_cast<int>(t.second);
   const auto fraction_ms = static_cast<int>(std::lround((t.second - whole) * 1000));
   const std::string fraction = fraction_ms ? fmt::format(".{:03}", fraction_ms) : "";
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}{}Z", t.year, t.month, t.day, t.hour, t.minute, whole, fraction);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}{}Z", t.year, t.month, t.day, t.hour, t.minute, whole,
+                     fraction);
 }
 
 std::string to_compact_iso8601(std::int64_t time_ms) {
