@@ -124,6 +124,7 @@ std::optional<ObservationSet::Entry> entry_of(const Places& places, std::size_t 
                                .longitude_deg = longitude,
                                .time_ms = *time_ms,
                                .platform = number_or_unknown(places.platform[subset]),
+                               .instrument = Instrument::amsua,
                                .scan_line = number_or_unknown(places.scan_line[subset]),
                                .field_of_view = number_or_unknown(places.field_of_view[subset]),
                                .surface = Surface::unknown,

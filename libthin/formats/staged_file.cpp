@@ -1,6 +1,7 @@
 #include "libthin/formats/staged_file.h"
 
 #include <algorithm>
+#include <sstream>
 
 #include "libthin/formats/file_bytes.h"
 #include "libthin/formats/netcdf_image.h"
@@ -9,13 +10,18 @@ namespace thin {
 namespace {
 
 // Of the layout below. A file of another version is refused: staged files live no longer than a window.
-constexpr int kStagedVersion = 1;
+constexpr int kStagedVersion = 2;
 constexpr const char* kVersionName = "thin_staged_version";
+
+// Of the i-th further variable: its own name may hold what netCDF does not allow in one.
+std::string variable_name(std::size_t i) {
+  return "variable_" + std::to_string(i);
+}
 
 // Structures as columns, the way that netCDF holds them.
 struct Columns {
   std::vector<double> x, y, z;
-  std::vector<std::uint8_t> surface;
+  std::vector<std::uint8_t> surface, instrument, channel_instrument;
   std::vector<std::uint32_t> file, message, subset;
 };
 
@@ -27,6 +33,9 @@ Columns columns_of(const ObservationSet& set) {
     columns.z.push_back(p.z);
   }
   for (const Surface surface : set.surface) columns.surface.push_back(static_cast<std::uint8_t>(surface));
+  for (const Instrument whose : set.instrument) columns.instrument.push_back(static_cast<std::uint8_t>(whose));
+  for (const Instrument whose : set.channel_instrument)
+    columns.channel_instrument.push_back(static_cast<std::uint8_t>(whose));
   for (const SourceReference& source : set.source) {
     columns.file.push_back(source.file);
     columns.message.push_back(source.message);
@@ -69,6 +78,17 @@ void put_observations(NetcdfWriter& file, const ObservationSet& set) {
   file.put("field_of_view", {observation}, std::span(set.field_of_view));
   file.put("surface", {observation}, std::span(columns.surface));
   file.put("value_k", {observation, channel}, std::span(set.values));
+  file.put("instrument", {observation}, std::span(columns.instrument));
+  if (!columns.channel_instrument.empty())
+    file.put("channel_instrument", {channel}, std::span(columns.channel_instrument));
+  if (!set.first_guess_k.empty()) file.put("first_guess_k", {observation, channel}, std::span(set.first_guess_k));
+  std::string names;
+  std::size_t i = 0;
+  for (const auto& [name, column] : set.variables) {
+    file.put(variable_name(i++).c_str(), {observation}, std::span(column));
+    names += name + "\n";
+  }
+  file.put_attribute("variables", names);
   file.put("source_file", {observation}, std::span(columns.file));
   file.put("source_message", {observation}, std::span(columns.message));
   file.put("source_subset", {observation}, std::span(columns.subset));
@@ -84,6 +104,20 @@ void put_skipped(NetcdfWriter& file, const std::vector<SkippedPart>& skipped) {
   file.put("skipped_reason", {text}, std::span(columns.text.data(), columns.text.size()));
 }
 
+Instrument known_instrument(NetcdfReader& file, std::uint8_t number) {
+  if (number > static_cast<std::uint8_t>(Instrument::atms)) file.fail("it holds an instrument that this version lacks");
+  return static_cast<Instrument>(number);
+}
+
+void get_variables(NetcdfReader& file, ObservationSet& set) {
+  std::istringstream names(file.text_attribute("variables"));
+  std::size_t i = 0;
+  for (std::string name; std::getline(names, name);) {
+    std::vector<double>& column = set.variables[name] = file.get<double>(variable_name(i++).c_str());
+    if (column.size() != set.latitude_deg.size()) file.fail("its variable " + name + " differs in length");
+  }
+}
+
 ObservationSet get_observations(NetcdfReader& file) {
   ObservationSet set;
   set.channels = file.get<int>("channel_number");
@@ -97,7 +131,10 @@ ObservationSet get_observations(NetcdfReader& file) {
   set.values = file.get<double>("value_k");
   const auto x = file.get<double>("position_x_km"), y = file.get<double>("position_y_km"),
              z = file.get<double>("position_z_km");
-  const auto surface = file.get<std::uint8_t>("surface");
+  const auto surface = file.get<std::uint8_t>("surface"), instrument = file.get<std::uint8_t>("instrument"),
+             channel_instrument = file.get<std::uint8_t>("channel_instrument");
+  set.first_guess_k = file.get<double>("first_guess_k");
+  get_variables(file, set);
   const auto source_file = file.get<std::uint32_t>("source_file"), message = file.get<std::uint32_t>("source_message"),
              subset = file.get<std::uint32_t>("source_subset");
   const std::size_t lengths[] = {set.latitude_deg.size(),
@@ -110,18 +147,24 @@ ObservationSet get_observations(NetcdfReader& file) {
                                  y.size(),
                                  z.size(),
                                  surface.size(),
+                                 instrument.size(),
                                  source_file.size(),
                                  message.size(),
                                  subset.size()};
   const bool equal = std::all_of(std::begin(lengths), std::end(lengths), [&](std::size_t n) { return n == count; });
-  if (!equal || set.values.size() != count * set.channels.size()) file.fail("its variables differ in length");
+  const auto fits = [](std::size_t length, std::size_t whole) { return length == 0 || length == whole; };
+  if (!equal || set.values.size() != count * set.channels.size() ||
+      !fits(set.first_guess_k.size(), set.values.size()) || !fits(channel_instrument.size(), set.channels.size()))
+    file.fail("its variables differ in length");
   if (!file.ok()) return set;
   for (std::size_t i = 0; i < count; ++i) {
     if (surface[i] > static_cast<std::uint8_t>(Surface::ice)) file.fail("it holds a surface that this version lacks");
     set.position_km.push_back({x[i], y[i], z[i]});
     set.surface.push_back(static_cast<Surface>(surface[i]));
+    set.instrument.push_back(known_instrument(file, instrument[i]));
     set.source.push_back({source_file[i], message[i], subset[i]});
   }
+  for (const std::uint8_t whose : channel_instrument) set.channel_instrument.push_back(known_instrument(file, whose));
   return set;
 }
 

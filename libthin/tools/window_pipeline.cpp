@@ -17,12 +17,6 @@ constexpr double kReportBandwidthKm = 100;
 // All observations in one set; source.file is the place of the file in `files`.
 ObservationSet merged(const std::vector<WindowFile>& files) {
   ObservationSet all;
-  std::size_t total = 0;
-  for (const WindowFile& file : files) total += file.contents.observations.size();
-  if (files.empty()) return all;
-  all.channels = files.front().contents.observations.channels;
-  all.value_kind = files.front().contents.observations.value_kind;
-  all.reserve(total);
   for (std::size_t i = 0; i < files.size(); ++i) {
     const std::size_t first = all.size();
     all.append(files[i].contents.observations);

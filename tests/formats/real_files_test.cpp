@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Files, RealAmsuA, testing::ValuesIn(kAmsuAFiles));
 TEST(RealAmsuATimes, AreThoseOfTheScanNotOfTheHeader) {
   THIN_REQUIRE_SHARED_DATA();
   const Result<ReadObservations> contents = read_observations(real_file("amsua/AMSUA.bufr"));
-  ASSERT_TRUE(contents.ok());
+  ASSERT_TRUE(contents.ok()) << contents.error().message;
   const auto [first, last] =
       std::minmax_element(contents->observations.time_ms.begin(), contents->observations.time_ms.end());
   EXPECT_EQ(to_iso8601(*first).substr(0, 19), "2013-05-29T12:23:43");

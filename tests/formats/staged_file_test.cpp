@@ -30,6 +30,7 @@ ReadObservations awkward_contents(std::size_t count, unsigned seed) {
         .longitude_deg = 359.99,
         .time_ms = static_cast<std::int64_t>(random()),
         .platform = static_cast<std::int32_t>(i) - 1,
+        .instrument = i % 2 ? Instrument::mhs : Instrument::atms,
         .scan_line = kUnknownNumber,
         .field_of_view = std::numeric_limits<std::int32_t>::max(),
         .surface = static_cast<Surface>(i % 5),
@@ -37,6 +38,10 @@ ReadObservations awkward_contents(std::size_t count, unsigned seed) {
     const double values[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::denorm_min(), -0.0};
     set.push_back(entry, values);
   }
+  set.channel_instrument = {Instrument::mhs, Instrument::mhs, Instrument::atms};
+  set.first_guess_k = set.values;
+  set.variables["MetaData/sensorScanAngle"] = std::vector<double>(count, -0.0);
+  set.variables["zenith angle, degrees"] = std::vector<double>(count, std::numeric_limits<double>::quiet_NaN());
   contents.skipped = {{0, 0, ""}, {3, 0xffffffffffULL, "a reason, in two\nlines"}, {4, 5, std::string("a\0b", 3)}};
   return contents;
 }
@@ -62,6 +67,14 @@ void expect_equal(const ReadObservations& a, const ReadObservations& b) {
   EXPECT_EQ(a.observations.field_of_view, b.observations.field_of_view);
   EXPECT_EQ(a.observations.surface, b.observations.surface);
   expect_same_bits(a.observations.values, b.observations.values);
+  expect_same_bits(a.observations.first_guess_k, b.observations.first_guess_k);
+  EXPECT_EQ(a.observations.instrument, b.observations.instrument);
+  EXPECT_EQ(a.observations.channel_instrument, b.observations.channel_instrument);
+  ASSERT_EQ(a.observations.variables.size(), b.observations.variables.size());
+  for (const auto& [name, column] : a.observations.variables) {
+    ASSERT_TRUE(b.observations.variables.contains(name)) << name;
+    expect_same_bits(column, b.observations.variables.at(name));
+  }
   EXPECT_EQ(a.observations.source, b.observations.source);
   ASSERT_EQ(a.skipped.size(), b.skipped.size());
   for (std::size_t i = 0; i < a.skipped.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -41,6 +42,35 @@ TEST(ObservationSet, AppendIsTheOneBehindTheOther) {
   ASSERT_EQ(both.size(), 12U);
   EXPECT_EQ(both.time_ms[6], b.time_ms[1]);
   EXPECT_TRUE(std::ranges::equal(both.values_of(11), b.values_of(6)));
+}
+
+TEST(ObservationSet, AppendOfAnotherInstrumentAddsItsChannels) {
+  ObservationSet amsua = test::random_observations(3, 2, 2), mhs = test::random_observations(2, 1, 3);
+  amsua.instrument.assign(3, Instrument::amsua);
+  mhs.instrument.assign(2, Instrument::mhs);
+  mhs.first_guess_k = {250, 251};
+  mhs.variables["zenith"] = {10, 20};
+  ObservationSet one = amsua, other = mhs;
+  one.append(mhs);
+  other.append(amsua);
+  EXPECT_EQ(one.channels, (std::vector<int>{1, 2, 1}));
+  EXPECT_EQ(one.channel_instrument, (std::vector<Instrument>{Instrument::amsua, Instrument::amsua, Instrument::mhs}));
+  EXPECT_EQ(other.channel_instrument, one.channel_instrument);
+  EXPECT_TRUE(one.measures(2, 1));
+  EXPECT_FALSE(one.measures(2, 2));
+  EXPECT_EQ(one.values_of(2)[1], amsua.values_of(2)[1]);
+  EXPECT_TRUE(std::isnan(one.values_of(2)[2]));
+  EXPECT_TRUE(std::isnan(one.values_of(4)[0]));
+  EXPECT_EQ(one.values_of(4)[2], mhs.values_of(1)[0]);
+  EXPECT_EQ(other.values_of(1)[2], mhs.values_of(1)[0]);
+  ASSERT_EQ(one.first_guess_k.size(), one.values.size());
+  EXPECT_EQ(one.first_guess_k[14], 251);
+  EXPECT_TRUE(std::isnan(one.first_guess_k[0]));
+  EXPECT_TRUE(std::isnan(one.variables["zenith"][2]));
+  EXPECT_EQ(one.variables["zenith"][4], 20);
+  EXPECT_EQ(one.select_channels(std::vector<std::size_t>{2}).channel_instrument,
+            std::vector<Instrument>{Instrument::mhs});
+  EXPECT_EQ(one.select(std::vector<std::uint32_t>{4}).variables["zenith"], std::vector<double>{20});
 }
 
 TEST(ObservationSet, SelectChannelsKeepsTheirNumbers) {
