@@ -100,14 +100,15 @@ Result<WindowOutcome> thin_window(std::vector<WindowFile> files, std::vector<Ref
   if (observations.size() == 0) return nothing_left(outcome.prepared, all);
   clock.finish("prepare");
 
-  Result<Retained> retained = settings.method->thin(observations);
-  if (!retained) return retained.error();
-  outcome.retained = std::move(*retained);
+  Result<Choice> choice = settings.thinner->thin(observations);
+  if (!choice) return choice.error();
+  outcome.retained = std::move(choice->retained);
+  for (std::string& note : choice->notes) outcome.prepared.notes.push_back(std::move(note));
   for (const std::uint32_t i : outcome.retained) ++outcome.retained_by_platform[observations.platform[i]];
   clock.finish("thin");
 
   Result<ThinnedError> error =
-      thinned_error(observations, outcome.retained, settings.method->bandwidth_km().value_or(kReportBandwidthKm));
+      thinned_error(observations, outcome.retained, choice->bandwidth_km.value_or(kReportBandwidthKm));
   if (!error) return error.error();
   outcome.error = std::move(*error);
   clock.finish("evaluate");
