@@ -6,6 +6,7 @@
 
 #include "libthin/estimation/gme_grid.h"
 #include "libthin/foundation/parallel.h"
+#include "libthin/estimation/neighbourhood_table.h"
 #include "libthin/thinning/thinner.h"
 #include "tests/support/synthetic_soundings.h"
 
