@@ -401,7 +401,8 @@ class IodaLayout : public NetcdfLayout {
       const std::size_t width = variable.count() / edit.locations;
       for (std::size_t i = 0; i < edit.locations; ++i)
         added.values.insert(added.values.end(), width, is_retained[i] ? 0 : kIodaThinned);
-      added.attributes = {{"long_name", "thinning: 0 retained, 16 thinned"}};
+      added.flag_values = {0, kIodaThinned};
+      added.attributes = {{"flag_meanings", "retained thinned"}};
     }
     return edit;
   }

@@ -220,16 +220,23 @@ Error NetcdfFile::error(const std::string& where, int netcdf_code) const {
                       name_, where.empty() ? "its header" : where, nc_strerror(netcdf_code))};
 }
 
-Result<std::vector<double>> NetcdfFile::numbers(const NetcdfVariable& variable) const {
+Result<std::vector<double>> NetcdfFile::get(const NetcdfVariable& variable, std::span<const std::size_t> start,
+                                            std::span<const std::size_t> count) const {
   if (!is_number(variable.type) || variable.count() > kMostNetcdfValues)
     return Error{ErrorKind::input,
-                 fmt::format("{}: {} holds no numbers, or more than {} of them. Send it as the layout "
-                             "has it (docs/formats.md).",
+                 fmt::format("{}: {} holds no numbers, or more than {} of them. Send it as the layout has it "
+                             "(docs/formats.md).",
                              name_, variable.path, kMostNetcdfValues)};
-  std::vector<double> values(variable.count());
-  if (!values.empty())
-    if (const int code = nc_get_var_double(variable.group, variable.id, values.data()); code != NC_NOERR)
-      return error(variable.path, code);
+  std::size_t length = 1;
+  for (const std::size_t entries : count) length *= entries;
+  std::vector<double> values(length);
+  if (values.empty()) return values;
+  const int code = nc_get_vara_double(variable.group, variable.id, start.data(), count.data(), values.data());
+  if (code != NC_NOERR) return error(variable.path, code);
+  return values;
+}
+
+void NetcdfFile::mark_missing(const NetcdfVariable& variable, std::vector<double>& values) const {
   const double fill = number_attribute(variable, "_FillValue").value_or(default_fill(variable.type));
   const double missing = number_attribute(variable, "missing_value").value_or(fill);
   const double scale = number_attribute(variable, "scale_factor").value_or(1);
@@ -240,7 +247,32 @@ Result<std::vector<double>> NetcdfFile::numbers(const NetcdfVariable& variable) 
     else if (scale != 1 || offset != 0)
       value = value * scale + offset;
   }
+}
+
+Result<std::vector<double>> NetcdfFile::stored_numbers(const NetcdfVariable& variable) const {
+  const std::vector<std::size_t> start(variable.lengths.size(), 0);
+  return get(variable, start, variable.lengths);
+}
+
+Result<std::vector<double>> NetcdfFile::numbers(const NetcdfVariable& variable) const {
+  Result<std::vector<double>> values = stored_numbers(variable);
+  if (values) mark_missing(variable, *values);
   return values;
+}
+
+Result<std::vector<double>> NetcdfFile::numbers(const NetcdfVariable& variable, std::size_t row) const {
+  std::vector<std::size_t> start(variable.lengths.size(), 0), count = variable.lengths;
+  start[0] = row;
+  count[0] = 1;
+  Result<std::vector<double>> values = get(variable, start, count);
+  if (values) mark_missing(variable, *values);
+  return values;
+}
+
+Result<std::vector<double>> NetcdfFile::column(const std::string& path, std::size_t length) const {
+  const NetcdfVariable* variable = find(path);
+  if (!variable || variable->lengths != std::vector<std::size_t>{length}) return std::vector<double>();
+  return numbers(*variable);
 }
 
 Result<std::vector<std::string>> NetcdfFile::texts(const NetcdfVariable& variable) const {

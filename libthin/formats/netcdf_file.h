@@ -59,6 +59,12 @@ class NetcdfFile {
   // All values, the last dimension fastest; _FillValue, missing_value and netCDF's own fill values are NaN;
   // scale_factor and add_offset are applied. Errors: input, where it is no number or can't be decoded.
   Result<std::vector<double>> numbers(const NetcdfVariable& variable) const;
+  // The same for one entry of the first dimension. REQUIRES: there is such an entry
+  Result<std::vector<double>> numbers(const NetcdfVariable& variable, std::size_t row) const;
+  // As they are stored: fill values are numbers, nothing is scaled.
+  Result<std::vector<double>> stored_numbers(const NetcdfVariable& variable) const;
+  // The numbers of a variable over one dimension of this length; none, where there is no such variable.
+  Result<std::vector<double>> column(const std::string& path, std::size_t length) const;
 
   // As texts, without padding: of a string variable one per value, of characters one per row of the last dimension.
   Result<std::vector<std::string>> texts(const NetcdfVariable& variable) const;
@@ -68,6 +74,9 @@ class NetcdfFile {
 
  private:
   NetcdfFile(int id, std::string name) : id_(id), name_(std::move(name)) {}
+  Result<std::vector<double>> get(const NetcdfVariable& variable, std::span<const std::size_t> start,
+                                  std::span<const std::size_t> count) const;
+  void mark_missing(const NetcdfVariable& variable, std::vector<double>& values) const;
   Result<void> list_group(int group, const std::string& path, int depth);
   Result<void> check_sizes(std::size_t file_bytes) const;
 

@@ -13,7 +13,7 @@ namespace thin {
 namespace {
 
 std::vector<const NetcdfLayout*> layouts() {
-  return {&ioda_layout()};
+  return {&gsi_layout(), &feedback_layout(), &ioda_layout(), &cf_layout()};
 }
 
 // "its variables are Location", a few of them.

@@ -30,6 +30,9 @@ class NetcdfLayout {
 };
 
 const NetcdfLayout& ioda_layout();
+const NetcdfLayout& gsi_layout();
+const NetcdfLayout& feedback_layout();
+const NetcdfLayout& cf_layout();
 
 // As read_observations, from the file's bytes. Error input, for netCDF or HDF5 in none of the layouts.
 Result<ReadObservations> read_netcdf(std::span<const std::uint8_t> bytes, const std::string& name,

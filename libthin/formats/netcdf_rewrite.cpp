@@ -230,6 +230,8 @@ class Rewriter {
     if (is_hdf5_ && !failed_) copy_storage(like.group, like.id, like.dimensions, group, id, name.c_str());
     const int fill = NC_FILL_INT;
     if (!failed_) check(nc_put_att_int(group, id, "_FillValue", NC_INT, 1, &fill), name);
+    if (!failed_ && !added.flag_values.empty())
+      check(nc_put_att_int(group, id, "flag_values", NC_INT, added.flag_values.size(), added.flag_values.data()), name);
     for (const auto& [attribute, text] : added.attributes)
       if (!failed_) check(nc_put_att_text(group, id, attribute.c_str(), text.size(), text.data()), name);
     added_ids_.emplace_back(group, id);
@@ -274,6 +276,10 @@ class Rewriter {
     std::vector<std::size_t> start(rank, 0), count = variable.lengths, new_start(rank, 0), new_count;
     for (const int dimension : variable.dimensions) new_count.push_back(lengths_.at(dimension));
     const auto replacement = edit_.replaced.find(variable.path);
+    std::size_t new_values = 1;
+    for (const std::size_t length : new_count) new_values *= length;
+    if (replacement != edit_.replaced.end() && replacement->second.size() != new_values)
+      return check(NC_EEDGE, variable.path);
     if (replacement != edit_.replaced.end())
       return check(nc_put_vara_double(to, id, new_start.data(), new_count.data(), replacement->second.data()),
                    variable.path);

@@ -23,6 +23,7 @@ struct AddedVariable {
   std::string path;  // "ThinningQC/brightnessTemperature"; the group is made where there is none
   std::string like;  // path of the variable whose dimensions, chunking and compression it gets
   std::vector<int> values;
+  std::vector<int> flag_values;  // as the attribute, in CF's sense
   std::vector<std::pair<std::string, std::string>> attributes;
 };
 

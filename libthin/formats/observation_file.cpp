@@ -25,6 +25,20 @@ void InputOptions::declare(OptionTable& table) {
             {.explanation = "groups of quality flags: the first that a file has decides; empty: none"});
   table.add("ioda_accepted", ioda_accepted,
             {.explanation = "flags of ioda_quality with which a value is used; others count as missing"});
+  table.add("gsi_innovation", gsi_innovation, {.explanation = "variable of GSI diagnostics that is the innovation"});
+  table.add("gsi_accepted", gsi_accepted, {.explanation = "values of QC_Flag with which a value is used"});
+  table.add("feedback_run_type", feedback_run_type,
+            {.explanation = "veri_run_type of the run that is the first guess: 0 forecast, 1 first guess, 3 analysis"});
+  table.add("feedback_members", feedback_members,
+            {.explanation = "veri_ens_member of that run, in order of preference: -1 deterministic, 0 ensemble mean"});
+  table.add("feedback_accepted", feedback_accepted,
+            {.explanation = "states of an observation with which it is used: 0 accepted, 1 active, 5 passive"});
+  table.add("cf_first_guess", cf_first_guess, {.explanation = "variable of CF files that is the first guess"});
+  table.add("cf_bias", cf_bias,
+            {.explanation = "variable of CF files that is the bias of the observed values; where a file has it, it is "
+                            "added to the first guess"});
+  table.add("cf_quality", cf_quality, {.explanation = "variable of CF files that holds quality flags"});
+  table.add("cf_accepted", cf_accepted, {.explanation = "flags of cf_quality with which a value is used"});
 }
 
 void OutputOptions::declare(OptionTable& table) {

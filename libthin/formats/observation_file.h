@@ -43,6 +43,22 @@ struct InputOptions {
   std::vector<std::string> ioda_quality = {"GsiEffectiveQC", "EffectiveQC", "EffectiveQC0", "PreQC"};
   std::vector<int> ioda_accepted = {0};
 
+  // GSI diagnostics: the variable that is the innovation, and the values of QC_Flag with which it is used.
+  std::string gsi_innovation = "Obs_Minus_Forecast_adjusted";
+  std::vector<int> gsi_accepted = {0};
+
+  // Feedback files: the run whose veri_data is the first guess, by veri_run_type and the first veri_ens_member of the
+  // list that there is; the values of state with which a value is used.
+  int feedback_run_type = 1;
+  std::vector<int> feedback_members = {-1, 0};
+  std::vector<int> feedback_accepted = {0, 1};
+
+  // CF: variables. The quality flag is one per observation and channel, or one per observation.
+  std::string cf_first_guess = "first_guess_brightness_temperature";
+  std::string cf_bias = "brightness_temperature_bias";
+  std::string cf_quality = "quality_flag";
+  std::vector<int> cf_accepted = {0};
+
   void declare(OptionTable& table);
 };
 

@@ -39,8 +39,8 @@ bool lengths_fit(const SoundingTable& table) {
   const auto whole = [](std::size_t length, std::size_t wanted) { return length == wanted; };
   const auto fits = [](std::size_t length, std::size_t wanted) { return length == 0 || length == wanted; };
   return whole(table.latitude_deg.size(), n) && whole(table.longitude_deg.size(), n) && whole(table.time_s.size(), n) &&
-         whole(table.observed_k.size(), values) && fits(table.platform.size(), n) && fits(table.scan_line.size(), n) &&
-         fits(table.field_of_view.size(), n) && fits(table.surface.size(), n) &&
+         whole(table.observed_k.size(), values) && fits(table.numbers.size(), n) && fits(table.platform.size(), n) &&
+         fits(table.scan_line.size(), n) && fits(table.field_of_view.size(), n) && fits(table.surface.size(), n) &&
          fits(table.first_guess_k.size(), values) &&
          std::all_of(table.variables.begin(), table.variables.end(),
                      [&](const auto& variable) { return variable.second.size() == n; });
@@ -94,9 +94,9 @@ Result<ReadObservations> observations_of(SoundingTable table, const std::string&
     entry.scan_line = whole_number(table.scan_line, i, kUnknownNumber);
     entry.field_of_view = whole_number(table.field_of_view, i, kUnknownNumber);
     entry.surface = table.surface.empty() ? Surface::unknown : table.surface[i];
-    entry.source.subset = static_cast<std::uint32_t>(i);
+    entry.source.subset = table.numbers.empty() ? static_cast<std::uint32_t>(i) : table.numbers[i];
     set.push_back(entry, row);
-    kept.push_back(entry.source.subset);
+    kept.push_back(static_cast<std::uint32_t>(i));
   }
   if (set.size() == 0)
     return Error{ErrorKind::input, fmt::format("{}: none of its {} locations has a usable position and time. Ask the "
@@ -108,6 +108,12 @@ Result<ReadObservations> observations_of(SoundingTable table, const std::string&
     contents.skipped.push_back(
         {0, 0, fmt::format("{} of {} locations without usable position or time", left_out, table.locations)});
   return contents;
+}
+
+void join(ReadObservations&& other, ReadObservations& into) {
+  into.observations.append(other.observations);
+  into.instrument += ", " + other.instrument;
+  into.skipped.insert(into.skipped.end(), other.skipped.begin(), other.skipped.end());
 }
 
 Instrument instrument_of_name(const std::string& name) {

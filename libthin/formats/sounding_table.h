@@ -17,7 +17,8 @@ namespace thin {
 // Columns have one entry per location, or are empty where the file has none; NaN is missing.
 struct SoundingTable {
   std::size_t locations = 0;
-  std::vector<int> channels;  // the instrument's numbers, in the file's order, each once
+  std::vector<std::uint32_t> numbers;  // of the locations in the file, where they are not 0, 1, 2, ...
+  std::vector<int> channels;           // the instrument's numbers, in the file's order, each once
   Instrument instrument = Instrument::unknown;
 
   std::vector<double> latitude_deg, longitude_deg;
@@ -35,6 +36,9 @@ struct SoundingTable {
 // Errors: input, where no location is left, or some column has another length.
 Result<ReadObservations> observations_of(SoundingTable table, const std::string& layout, const InputOptions& options,
                                          const std::string& name);
+
+// Adds the observations of another instrument of the same file; its notes are taken to be the same.
+void join(ReadObservations&& other, ReadObservations& into);
 
 // Instruments by the names that files use, any case: "amsua", "AMSU-A", "amsua_n19", "mhs_metop-b".
 Instrument instrument_of_name(const std::string& name);
