@@ -64,9 +64,10 @@ struct Configuration::Content {
   std::string name;
   toml::table root;
   std::set<std::string> known_sections;
+  std::set<std::string> known_lists;
   std::vector<Problem> problems;
 
-  const toml::table* section(const std::string& section) const { return root[section].as_table(); }
+  const toml::table* section(const std::string& section) const { return toml::at_path(root, section).as_table(); }
 
   void add_problem(const toml::source_region& where, std::string text) {
     problems.push_back({where.begin.line, where.begin.column, std::move(text)});
@@ -108,6 +109,12 @@ bool Configuration::has_section(const std::string& section) const {
   return content_->section(section) != nullptr;
 }
 
+std::size_t Configuration::list_size(const std::string& section) {
+  content_->known_lists.insert(section);
+  const toml::array* list = toml::at_path(content_->root, section).as_array();
+  return list && list->is_homogeneous(toml::node_type::table) ? list->size() : 0;
+}
+
 std::optional<std::string> Configuration::peek_text(const std::string& section, const std::string& key) const {
   const toml::table* table = content_->section(section);
   return table ? (*table)[key].value_exact<std::string>() : std::nullopt;
@@ -119,6 +126,11 @@ void Configuration::read_section(const std::string& section, OptionTable& option
   if (!table) return;
   for (const auto& [toml_key, node] : *table) {
     const std::string key(toml_key.str());
+    if (const std::string path = section + "." + key; content_->known_lists.contains(path)) {
+      if (!node.is_array_of_tables())
+        content_->add_problem(toml_key.source(), fmt::format("{0} is a list of sections: write [[{0}]]", path));
+      continue;
+    }
     const Option* option = options.find(key);
     if (!option) {
       std::vector<std::string> known;

@@ -26,6 +26,10 @@ class Configuration {
 
   bool has_section(const std::string& section) const;
 
+  // How many [[section]] there are, such as [[evaluate.variant]]; they are then read as "evaluate.variant[0]" and so
+  // on. To be asked before the section around them is read.
+  std::size_t list_size(const std::string& section);
+
   // Text at section.key, where it is there and is text: for choices that decide what else may be in the section.
   std::optional<std::string> peek_text(const std::string& section, const std::string& key) const;
 

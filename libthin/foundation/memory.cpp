@@ -1,5 +1,6 @@
 #include "libthin/foundation/memory.h"
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -46,7 +47,26 @@ std::uint64_t left_by_the_control_group() {
   return *most > *used ? *most - *used : 0;
 }
 
+std::optional<std::uint64_t> process_status_bytes(const std::string& field) {
+  std::ifstream file("/proc/self/status");
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with(field + ":")) return std::stoull(line.substr(field.size() + 1)) * 1024;
+  return std::nullopt;
+}
+
 }  // namespace
+
+PeakMemory::PeakMemory() {
+  malloc_trim(0);  // what is free already would hide what is taken next
+  std::ofstream mark("/proc/self/clear_refs");
+  if (mark << 5 << std::flush) start_bytes_ = process_status_bytes("VmRSS");
+}
+
+std::optional<std::uint64_t> PeakMemory::bytes_above_start() const {
+  const auto peak = process_status_bytes("VmHWM");
+  if (!start_bytes_ || !peak) return std::nullopt;
+  return *peak > *start_bytes_ ? *peak - *start_bytes_ : 0;
+}
 
 std::uint64_t available_memory_bytes() {
   return std::min({left_by_the_machine(), left_by_the_address_space(), left_by_the_control_group()});

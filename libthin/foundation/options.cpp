@@ -238,6 +238,13 @@ const Option* OptionTable::find(const std::string& name) const {
   return found == options_.end() ? nullptr : &*found;
 }
 
+OptionTable OptionTable::without(const std::vector<std::string>& names) const {
+  OptionTable rest;
+  for (const Option& option : options_)
+    if (std::find(names.begin(), names.end(), option.name) == names.end()) rest.options_.push_back(option);
+  return rest;
+}
+
 std::optional<std::string> likely_meant(const std::string& name, const std::vector<std::string>& known) {
   const std::string* best = nullptr;
   std::size_t best_distance = name.size() / 3 + 2;  // more than every third letter wrong: something else was meant

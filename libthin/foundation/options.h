@@ -81,6 +81,9 @@ class OptionTable {
   const std::vector<Option>& options() const { return options_; }
   const Option* find(const std::string& name) const;
 
+  // The table less the options of these names, for the same fields.
+  OptionTable without(const std::vector<std::string>& names) const;
+
  private:
   void add_text_option(std::string name, OptionFacts facts, std::function<void(const std::string&)> store,
                        std::function<std::string()> load);

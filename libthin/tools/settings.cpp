@@ -6,23 +6,8 @@
 namespace thin {
 namespace {
 
-// Sections of the daemon, which reads and checks them itself.
-constexpr const char* kDaemonSections[] = {"daemon", "window"};
-
-void choose_method(Configuration& configuration, Settings& settings) {
-  settings.method_name = configuration.peek_text("thinning", "method").value_or(settings.method_name);
-  if (const MethodEntry* entry = find_thinning_method(settings.method_name)) {
-    settings.thinner = std::make_unique<Thinner>(*entry);
-    return;
-  }
-  std::vector<std::string> known;
-  for (const MethodEntry& entry : thinning_methods()) known.push_back(entry.name);
-  const auto meant = likely_meant(settings.method_name, known);
-  configuration.add_problem("thinning", "method",
-                            fmt::format("= \"{}\" is not a method; {}", settings.method_name,
-                                        meant ? fmt::format("did you mean \"{}\"?", *meant)
-                                              : fmt::format("known are {}", fmt::join(known, ", "))));
-}
+// Sections of the daemon and of `thin evaluate`, which read and check them themselves.
+constexpr const char* kOtherSections[] = {"daemon", "window", "evaluate", "synthetic"};
 
 void keep_resolved(const std::string& section, const OptionTable& table, Settings& settings) {
   for (const Option& option : table.options())
@@ -30,6 +15,29 @@ void keep_resolved(const std::string& section, const OptionTable& table, Setting
 }
 
 }  // namespace
+
+std::unique_ptr<Thinner> thinner_named(Configuration& configuration, const std::string& section, const std::string& key,
+                                       const std::string& name) {
+  if (const MethodEntry* entry = find_thinning_method(name)) return std::make_unique<Thinner>(*entry);
+  std::vector<std::string> known;
+  for (const MethodEntry& entry : thinning_methods()) known.push_back(entry.name);
+  const auto meant = likely_meant(name, known);
+  configuration.add_problem(section, key,
+                            fmt::format("= \"{}\" is not a method; {}", name,
+                                        meant ? fmt::format("did you mean \"{}\"?", *meant)
+                                              : fmt::format("known are {}", fmt::join(known, ", "))));
+  return nullptr;
+}
+
+std::unique_ptr<Thinner> thinner_named_in(Configuration& configuration, const std::string& section, std::string& name) {
+  name = configuration.peek_text(section, "method").value_or(name);
+  return thinner_named(configuration, section, "method", name);
+}
+
+void declare_run_options(OptionTable& table, int& threads) {
+  table.add("threads", threads,
+            {.minimum = 0, .maximum = 4096, .explanation = "for all parallel work; 0: as many as there are cores"});
+}
 
 Result<Settings> read_settings(const std::string& path) {
   Result<Configuration> configuration = Configuration::read(path);
@@ -40,7 +48,7 @@ Result<Settings> read_settings(const std::string& path) {
 Result<Settings> read_settings(Configuration configuration) {
   Settings settings;
   OptionTable input, thinning, preparation, output, run;
-  choose_method(configuration, settings);
+  settings.thinner = thinner_named_in(configuration, "thinning", settings.method_name);
   thinning.add("method", settings.method_name, {});
   if (settings.thinner) {
     settings.thinner->declare_options(thinning);
@@ -56,12 +64,10 @@ Result<Settings> read_settings(Configuration configuration) {
   configuration.read_section("preparation", preparation);
   settings.output.declare(output);
   configuration.read_section("output", output);
-  run.add("threads", settings.threads,
-          {.minimum = 0, .maximum = 4096, .explanation = "for all parallel work; 0: as many as there are cores"});
+  declare_run_options(run, settings.threads);
   configuration.read_section("run", run);
-  for (const char* section : kDaemonSections) configuration.ignore_section(section);
+  for (const char* section : kOtherSections) configuration.ignore_section(section);
   if (Result<void> good = configuration.finish(); !good) return good.error();
-  // Not [run]: nothing in a result depends on it.
   keep_resolved("thinning", thinning, settings);
   keep_resolved("input", input, settings);
   keep_resolved("preparation", preparation, settings);

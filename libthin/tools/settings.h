@@ -28,4 +28,14 @@ struct Settings {
 Result<Settings> read_settings(const std::string& path);
 Result<Settings> read_settings(Configuration configuration);
 
+// The method of that name. Where there is none: nothing, and a problem at section.key.
+std::unique_ptr<Thinner> thinner_named(Configuration& configuration, const std::string& section, const std::string& key,
+                                       const std::string& name);
+
+// The method that section.method names; `name` is the default, and becomes the name.
+std::unique_ptr<Thinner> thinner_named_in(Configuration& configuration, const std::string& section, std::string& name);
+
+// [run]: nothing in a result depends on it.
+void declare_run_options(OptionTable& table, int& threads);
+
 }  // namespace thin

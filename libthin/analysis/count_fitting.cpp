@@ -1,0 +1,68 @@
+#include "libthin/analysis/count_fitting.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace thin {
+namespace {
+
+constexpr const char* kDensityOptions[] = {"horizontal_mesh", "min_horizontal_spacing", "step"};
+constexpr double kLeast = 1, kLargest = 20000;  // km; steps
+constexpr double kPrecision = 1.001;
+
+}  // namespace
+
+std::optional<std::string> density_option(const OptionTable& table) {
+  for (const char* name : kDensityOptions)
+    if (table.find(name)) return name;
+  return std::nullopt;
+}
+
+Result<double> fit_to_count(const Thinner& thinner, const OptionTable& options, const std::string& name,
+                            const ObservationSet& set, std::size_t count) {
+  const Option* option = options.find(name);
+  const bool is_integer = option && option->type == "integer";
+  if (!option || (!is_integer && option->type != "number"))
+    return Error{ErrorKind::configuration,
+                 fmt::format("\"{}\" is no numeric option of {} that a number to retain can be fitted with", name,
+                             thinner.method_name())};
+  const auto assign = [&](double value) {
+    return option->assign(is_integer ? OptionValue(static_cast<std::int64_t>(value)) : OptionValue(value));
+  };
+  const auto retained_with = [&](double value) -> Result<std::size_t> {
+    if (const auto problem = assign(value))
+      return Error{ErrorKind::configuration, fmt::format("{} {}", name, *problem)};
+    const Result<Choice> choice = thinner.thin(set);
+    if (!choice) return choice.error();
+    return choice->retained.size();
+  };
+
+  // invariant: `dense` retains more than count, or is the least value; `sparse` does not
+  double dense = std::max(kLeast, option->facts.minimum.value_or(kLeast));
+  double sparse = std::min(kLargest, option->facts.maximum.value_or(kLargest));
+  std::optional<double> best;
+  std::size_t best_miss = 0;
+  const auto try_value = [&](double value) -> Result<std::size_t> {
+    Result<std::size_t> retained = retained_with(value);
+    if (!retained) return retained;
+    const std::size_t miss = std::max(*retained, count) - std::min(*retained, count);
+    if (!best || miss < best_miss) best = value, best_miss = miss;
+    return retained;
+  };
+  for (const double end : {dense, sparse})
+    if (const auto tried = try_value(end); !tried) return tried.error();
+  while (best_miss > 0 && (is_integer ? sparse - dense > 1 : sparse / dense > kPrecision)) {
+    const double middle = is_integer ? std::floor(std::sqrt(dense * sparse)) : std::sqrt(dense * sparse);
+    // Between neighbours the geometric mean rounds down to the lower one.
+    const double value = middle > dense ? middle : dense + 1;
+    const auto retained = try_value(value);
+    if (!retained) return retained.error();
+    (*retained > count ? dense : sparse) = value;
+  }
+  if (const auto problem = assign(*best)) return Error{ErrorKind::internal, *problem};
+  return *best;
+}
+
+}  // namespace thin

@@ -1,0 +1,114 @@
+// thin evaluate: methods and numbers to retain compared, on files or on made-up observations.
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <memory>
+#include <numeric>
+#include <random>
+
+#include "libthin/formats/atomic_file.h"
+#include "libthin/foundation/parallel.h"
+#include "libthin/tools/commands.h"
+#include "libthin/tools/evaluation_report.h"
+
+namespace thin {
+namespace {
+
+struct Arguments {
+  std::string configuration, json, csv, costs;
+  std::vector<std::string> files;
+  std::optional<std::uint64_t> shuffle;
+};
+
+Result<ObservationSet> observations_of(const Arguments& arguments, const EvaluationSettings& settings) {
+  const bool made_up = settings.synthetic.source != SyntheticOptions::Source::none;
+  if (made_up == !arguments.files.empty())
+    return Error{ErrorKind::configuration,
+                 made_up ? "files are given, but [synthetic] source asks for made-up observations; remove one"
+                         : "name files to evaluate on, or set [synthetic] source"};
+  if (made_up) return settings.synthetic.make();
+  ObservationSet all;
+  for (const std::string& path : arguments.files) {
+    const Result<ReadObservations> contents = read_observations(path, settings.input);
+    if (!contents) return contents.error();
+    for (const SkippedPart& part : contents->skipped)
+      spdlog::warn("{}: message {} at byte {}: {}", path, part.message, part.offset, part.reason);
+    all.append(contents->observations);
+  }
+  return all;
+}
+
+// In an order of the seed, to show that results don't depend on it.
+ObservationSet shuffled(const ObservationSet& set, std::uint64_t seed) {
+  std::vector<std::uint32_t> order(set.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::mt19937_64 random(seed);
+  std::shuffle(order.begin(), order.end(), random);
+  return set.select(order);
+}
+
+Result<void> write_files(const Arguments& arguments, const Evaluation& evaluation, const EvaluationSettings& settings,
+                         const Prepared& prepared) {
+  if (!arguments.json.empty())
+    if (auto written = write_text_atomically(
+            arguments.json, evaluation_json(evaluation, settings, prepared.observations, prepared.notes));
+        !written)
+      return written;
+  if (!arguments.csv.empty())
+    if (auto written = write_text_atomically(arguments.csv, evaluation_csv(evaluation, settings)); !written)
+      return written;
+  if (!arguments.costs.empty()) return write_text_atomically(arguments.costs, costs_csv(evaluation, settings.variants));
+  return {};
+}
+
+Result<int> run(const Arguments& arguments) {
+  const Result<EvaluationSettings> settings = read_evaluation_settings(arguments.configuration);
+  if (!settings) return settings.error();
+  const ThreadLimit limit(settings->threads);
+  Result<ObservationSet> all = observations_of(arguments, *settings);
+  if (!all) return all.error();
+  if (arguments.shuffle) all = shuffled(*all, *arguments.shuffle);
+  const Result<Prepared> prepared = prepare(*all, {}, settings->preparation);
+  if (!prepared) return prepared.error();
+  if (prepared->observations.size() == 0)
+    return Error{ErrorKind::input, fmt::format("nothing is left to evaluate on: all {} observations were screened out; "
+                                               "see [preparation] for the channels and limits",
+                                               all->size())};
+  for (const std::string& note : prepared->notes) spdlog::warn("{}", note);
+
+  const Result<Evaluation> evaluation = evaluate(prepared->observations, settings->variants, settings->evaluation,
+                                                 [](const std::string& sentence) { spdlog::info("{}", sentence); });
+  if (!evaluation) return evaluation.error();
+  for (const Evaluation::Failure& failure : evaluation->failures)
+    spdlog::error("{}: {}", settings->variants[failure.variant].label, failure.reason);
+  fmt::print("{}", evaluation_table(*evaluation, *settings));
+  if (Result<void> written = write_files(arguments, *evaluation, *settings, *prepared); !written)
+    return written.error();
+  return evaluation->results.empty() ? exit_code(ErrorKind::input) : 0;
+}
+
+}  // namespace
+
+void add_evaluate_command(CLI::App& program, Action& action) {
+  CLI::App* command = program.add_subcommand(
+      "evaluate", "compare methods over numbers to retain: errors, separations, densities, seconds, memory");
+  const auto arguments = std::make_shared<Arguments>();
+  command->add_option("-c,--config", arguments->configuration, "configuration file (TOML) with [evaluate]")->required();
+  command->add_option("--json", arguments->json, "write the results here; the same bytes each time");
+  command->add_option("--csv", arguments->csv, "write a line for each result here; the same bytes each time");
+  command->add_option("--costs", arguments->costs, "write seconds and memory here (CSV)");
+  command->add_option("--shuffle", arguments->shuffle,
+                      "bring the observations into the order of this seed first: nothing may change");
+  command->add_option("files", arguments->files, "files of soundings; none with [synthetic] source");
+  command->callback([arguments, &action] {
+    action = [arguments] {
+      const Result<int> code = run(*arguments);
+      if (code) return *code;
+      spdlog::error("{}", code.error().message);
+      return exit_code(code.error().kind);
+    };
+  });
+}
+
+}  // namespace thin
