@@ -8,15 +8,23 @@
 namespace thin {
 namespace {
 
-constexpr const char* kDensityOptions[] = {"horizontal_mesh", "min_horizontal_spacing", "step"};
-constexpr double kLeast = 1, kLargest = 20000;  // km; steps
+// Between which limits the number retained is looked for.
+struct DensityOption {
+  const char* name;
+  double least, largest;
+};
+constexpr DensityOption kDensityOptions[] = {{"horizontal_mesh", 1, 20000},
+                                             {"min_horizontal_spacing", 1, 20000},
+                                             {"step", 1, 1000},
+                                             {"value_tolerance", 1e-3, 1e3}};
+constexpr DensityOption kAnyOption = {"", 1e-3, 20000};
 constexpr double kPrecision = 1.001;
 
 }  // namespace
 
 std::optional<std::string> density_option(const OptionTable& table) {
-  for (const char* name : kDensityOptions)
-    if (table.find(name)) return name;
+  for (const DensityOption& option : kDensityOptions)
+    if (table.find(option.name)) return option.name;
   return std::nullopt;
 }
 
@@ -40,8 +48,12 @@ Result<double> fit_to_count(const Thinner& thinner, const OptionTable& options, 
   };
 
   // invariant: `dense` retains more than count, or is the least value; `sparse` does not
-  double dense = std::max(kLeast, option->facts.minimum.value_or(kLeast));
-  double sparse = std::min(kLargest, option->facts.maximum.value_or(kLargest));
+  const auto known = std::find_if(std::begin(kDensityOptions), std::end(kDensityOptions),
+                                  [&](const DensityOption& each) { return each.name == name; });
+  const DensityOption limits = known == std::end(kDensityOptions) ? kAnyOption : *known;
+  double dense =
+      std::max(is_integer ? std::ceil(limits.least) : limits.least, option->facts.minimum.value_or(limits.least));
+  double sparse = std::min(limits.largest, option->facts.maximum.value_or(limits.largest));
   std::optional<double> best;
   std::size_t best_miss = 0;
   const auto try_value = [&](double value) -> Result<std::size_t> {

@@ -1,7 +1,7 @@
 #pragma once
 
 // Methods that can't be told how many to retain have an option instead that sets the density: the side of a box, a
-// spacing, a step. To compare them at equal numbers, it is fitted.
+// spacing, a step, a tolerance. To compare them at equal numbers, it is fitted.
 
 #include <optional>
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace thin {
 
-// The option of `table` that sets the density: the first of horizontal_mesh, min_horizontal_spacing and step that it
-// has. Nothing, where it has none.
+// The option of `table` that sets the density: the first of horizontal_mesh, min_horizontal_spacing, step and
+// value_tolerance that it has. Nothing, where it has none.
 std::optional<std::string> density_option(const OptionTable& table);
 
 // Sets the numeric option so that the number retained comes nearest to `count`, by bisection: fewer are retained the

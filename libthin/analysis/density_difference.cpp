@@ -2,18 +2,24 @@
 
 #include <cstdlib>
 #include <map>
+#include <numbers>
 
-#include "libthin/observations/box_mesh.h"
+#include "libthin/observations/geodesy.h"
+#include "libthin/thinning/latitude_longitude_mesh.h"
 
 namespace thin {
 
 std::vector<BoxDifference> density_difference(const ObservationSet& set, std::span<const std::uint32_t> retained,
                                               std::span<const std::uint32_t> reference, double box_km) {
-  const BoxMesh mesh(box_km);
-  std::map<BoxMesh::Box, BoxDifference> boxes;
+  using Mesh = LatitudeLongitudeMesh;
+  const double meridian_km = std::numbers::pi * kEarthRadiusKm;
+  const Mesh mesh = Mesh::reduced(Mesh::rounded(meridian_km / box_km, Mesh::Rounding::nearest),
+                                  2 * meridian_km / box_km, Mesh::Rounding::nearest);
+  std::map<std::uint64_t, BoxDifference> boxes;
   const auto box_of = [&](std::uint32_t i) -> BoxDifference& {
-    const BoxMesh::Box box = mesh.box_of(set.latitude_deg[i], set.longitude_deg[i]);
-    return boxes.try_emplace(box, BoxDifference{mesh.centre_latitude_deg(box), mesh.centre_longitude_deg(box)})
+    const Mesh::Box box = mesh.box_of(set.latitude_deg[i], set.longitude_deg[i]);
+    return boxes
+        .try_emplace(mesh.number(box), BoxDifference{mesh.centre_latitude_deg(box), mesh.centre_longitude_deg(box)})
         .first->second;
   };
   for (std::uint32_t i = 0; i < set.size(); ++i) ++box_of(i).observations;

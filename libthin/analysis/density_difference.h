@@ -17,7 +17,7 @@ struct BoxDifference {
   std::int32_t reference = 0;  // retained by the other
 };
 
-// The boxes (BoxMesh) that hold observations, from south to north, then eastwards. O(n).
+// The boxes of nearly equal area that hold observations, from south to north, then eastwards. O(n).
 std::vector<BoxDifference> density_difference(const ObservationSet& observations,
                                               std::span<const std::uint32_t> retained,
                                               std::span<const std::uint32_t> reference, double box_km = 100);

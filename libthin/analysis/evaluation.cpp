@@ -112,8 +112,7 @@ Result<void> add_signal_free_shares(const ObservationSet& set, const EvaluationO
                                     Evaluation& evaluation) {
   Retained all(set.size());
   std::iota(all.begin(), all.end(), 0U);
-  const auto flags =
-      signal_free(set, {.bandwidth_km = options.bandwidth_km, .largest_variance = options.signal_free_variance});
+  const auto flags = signal_free(set, {.bandwidth_km = options.bandwidth_km, .noise_factor = options.noise_factor});
   if (!flags) return flags.error();
   evaluation.signal_free_share = share_of(*flags, all);
   for (Evaluated& result : evaluation.results) result.signal_free_share = share_of(*flags, result.retained);
@@ -164,11 +163,11 @@ void EvaluationOptions::declare(OptionTable& table) {
   table.add("reference", reference, {.explanation = "label of the variant that densities are compared with"});
   table.add("box_km", box_km,
             {.unit = "km", .minimum = 1, .maximum = 5000, .explanation = "side of the boxes for that"});
-  table.add("signal_free_variance", signal_free_variance,
+  table.add("noise_factor", noise_factor,
             {.minimum = 0,
-             .maximum = 1,
-             .explanation = "an area is free of signal where the variance of the full set's estimate within 3h is less "
-                            "than this share of that over all observations"});
+             .maximum = 1000,
+             .explanation = "an area is free of signal where the full set's estimate varies no more within 3h than so "
+                            "many times what noise alone would make of it"});
   table.add("errors", errors, {.explanation = "false: costs, separations and densities alone; for large sets"});
   table.add("list_boxes", list_boxes, {.explanation = "write the density difference of every box into the JSON"});
   table.add("list_retained", list_retained, {.explanation = "write every set that is retained into the JSON"});

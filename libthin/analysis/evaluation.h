@@ -24,7 +24,7 @@ struct EvaluationOptions {
   int repetitions = 1;
   std::string reference = "stepwise";
   double box_km = 100;
-  double signal_free_variance = 0.2;
+  double noise_factor = 1.5;
   bool errors = true;
   bool list_boxes = false;
   bool list_retained = false;

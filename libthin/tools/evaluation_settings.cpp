@@ -83,9 +83,11 @@ void keep_resolved(const std::string& section, const OptionTable& table, Evaluat
 void VariantKeys::declare(OptionTable& table) {
   table.add("method", method, {.explanation = "as in [thinning]; every option of the method may follow"});
   table.add("label", label, {.explanation = "its name in tables and files; empty: the method's"});
-  table.add("fit", fit,
-            {.explanation = "for methods that can't be told a number: the option that is fitted to it; auto: "
-                            "horizontal_mesh, min_horizontal_spacing or step; none: the options stay as they are"});
+  table.add(
+      "fit", fit,
+      {.explanation =
+           "for methods that can't be told a number: the option that is fitted to it; auto: "
+           "horizontal_mesh, min_horizontal_spacing, step or value_tolerance; none: the options stay as they are"});
 }
 
 Result<EvaluationSettings> read_evaluation_settings(const std::string& path) {

@@ -124,5 +124,32 @@ TEST(Options, KnowTheirDefaults) {
   EXPECT_EQ(sample.table.find("factors")->default_value, "[1.5]");
 }
 
+TEST(Configuration, ListsOfSectionsAreReadOneByOne) {
+  const std::string text = "[group]\ncount = 2\n[[group.part]]\ncount = 4\n[[group.part]]\ncoutn = 5\n";
+  Result<Configuration> file = Configuration::parse(text, "c.toml");
+  ASSERT_TRUE(file);
+  ASSERT_EQ(file->list_size("group.part"), 2U);
+  EXPECT_EQ(file->list_size("group.other"), 0U);
+  Sample group, first, second;
+  file->read_section("group", group.table);
+  file->read_section("group.part[0]", first.table);
+  file->read_section("group.part[1]", second.table);
+  EXPECT_EQ(group.count, 2);
+  EXPECT_EQ(first.count, 4);
+  EXPECT_EQ(second.count, 3);
+  const Result<void> done = file->finish();
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().message, "c.toml:6:1: unknown key \"coutn\" in [group.part[1]]; did you mean \"count\"?");
+}
+
+TEST(Options, ATableWithoutSomeLeavesTheRestOfTheSameFields) {
+  Sample sample;
+  const OptionTable rest = sample.table.without({"flag", "size_km"});
+  EXPECT_EQ(rest.options().size(), sample.table.options().size() - 2);
+  EXPECT_EQ(rest.find("flag"), nullptr);
+  EXPECT_FALSE(rest.find("count")->assign(OptionValue(std::int64_t{7})));
+  EXPECT_EQ(sample.count, 7);
+}
+
 }  // namespace
 }  // namespace thin
