@@ -5,6 +5,7 @@
 #include "libthin/thinning/eea.h"
 #include "libthin/thinning/stepwise.h"
 #include "libthin/thinning/thinning_method.h"
+#include "libthin/thinning/top_down_clustering.h"
 
 namespace thin {
 namespace {
@@ -38,6 +39,8 @@ std::span<const MethodEntry> thinning_methods() {
           "top-down estimation error analysis on a regular grid: thesis 6.3.4", make_eea<Way::insertion, Points::grid>},
       MethodEntry{"stepwise", "every s-th field of view of every s-th scan line", "the reference of thesis 6.5",
                   make<Stepwise>},
+      MethodEntry{"top_down_clustering", "one observation per cluster of near places and like values",
+                  "thesis 6.3.1, eq. 6.8, 6.9; Gersho and Gray 1992", make<TopDownClustering>},
       MethodEntry{"top_down_eea",
                   "greedy insertion of what brings the estimate at the observations nearest to the full",
                   "top-down estimation error analysis: thesis 6.3.4", make_eea<Way::insertion, Points::observations>},

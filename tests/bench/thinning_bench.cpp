@@ -69,6 +69,9 @@ BENCHMARK(neighbourhoods)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(thin_with, box, "box", {{"horizontal_mesh", 200.0}})
     ->Arg(kObservations)
     ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(thin_with, top_down_clustering, "top_down_clustering", {{"retain_count", std::int64_t{3000}}})
+    ->Arg(kObservations)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(thin_with, stepwise, "stepwise", {{"step", std::int64_t{3}}})
     ->Arg(kObservations)
     ->Unit(benchmark::kMillisecond);
