@@ -5,8 +5,8 @@
 #include <benchmark/benchmark.h>
 
 #include "libthin/estimation/gme_grid.h"
-#include "libthin/foundation/parallel.h"
 #include "libthin/estimation/neighbourhood_table.h"
+#include "libthin/foundation/parallel.h"
 #include "libthin/thinning/thinner.h"
 #include "tests/support/synthetic_soundings.h"
 
@@ -67,6 +67,18 @@ EEA_BENCHMARKS(top_down_eea);
 EEA_BENCHMARKS(grid_top_down_eea);
 BENCHMARK(neighbourhoods)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(thin_with, box, "box", {{"horizontal_mesh", 200.0}})
+    ->Arg(kObservations)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(thin_with, box_gme, "box", {{"grid", std::string("gme")}, {"level", std::int64_t{5}}})
+    ->Arg(kObservations)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(thin_with, gaussian, "gaussian", {{"horizontal_mesh", 200.0}})
+    ->Arg(kObservations)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(thin_with, octree, "octree", {{"value_tolerance", 0.3}})
+    ->Arg(kObservations)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(thin_with, poisson_disk, "poisson_disk", {{"min_horizontal_spacing", 150.0}})
     ->Arg(kObservations)
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(thin_with, top_down_clustering, "top_down_clustering", {{"retain_count", std::int64_t{3000}}})
