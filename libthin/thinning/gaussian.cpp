@@ -50,7 +50,7 @@ struct Gaussian::TimeBins {
 void Gaussian::declare_options(OptionTable& table) {
   table.add("horizontal_mesh", horizontal_mesh_km_,
             {.unit = "km",
-             .maximum = 20000,
+             .maximum = 100000,
              .explanation = "height of the latitude bands; 0 or negative: place does not count"});
   table.add("use_reduced_horizontal_grid", use_reduced_horizontal_grid_,
             {.explanation = "fewer cells towards the poles; else as many in every band"});

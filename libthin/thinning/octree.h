@@ -27,7 +27,7 @@ class Octree : public ThinningMethod {
   struct Cell;
   bool is_to_be_split(const ThinningInput& input, const Cell& cell) const;
 
-  double value_tolerance_k_ = 0.3;
+  double value_tolerance_k_ = 0.4;
   double significance_ = 0.05;
   double minimum_cell_km_ = 50;
   double maximum_cell_km_ = 800;

@@ -14,6 +14,7 @@ namespace thin {
 namespace {
 
 constexpr double kSphereRadiusKm = 6371.0;
+constexpr double kSpacingWithoutAnyKm = 100;
 
 // A number for each observation that looks random (splitmix64), the same with every compiler.
 std::uint64_t scrambled(std::uint64_t seed, std::uint64_t i) {
@@ -73,7 +74,9 @@ void PoissonDisk::declare_options(OptionTable& table) {
   table.add("min_horizontal_spacing", min_horizontal_spacing_km_,
             {.unit = "km",
              .maximum = 20015,
-             .explanation = "radius of the exclusion volume along the Earth; 0 or negative: place does not count"});
+             .explanation =
+                 "radius of the exclusion volume along the Earth; 0 or negative: place does not count; unset: 100, "
+                 "or with min_time_spacing none"});
   table.add("min_time_spacing", min_time_spacing_,
             {.explanation = "half the length of the exclusion volume in time, such as \"PT1H\"; unset: time does not "
                             "count"});
@@ -94,16 +97,20 @@ std::optional<ThinningMethod::Conflict> PoissonDisk::conflict() const {
                   fmt::format("must be a duration such as \"PT1H\", not \"{}\"", *min_time_spacing_)};
 }
 
+double PoissonDisk::horizontal_spacing_km() const {
+  return min_horizontal_spacing_km_.value_or(min_time_spacing_ ? 0 : kSpacingWithoutAnyKm);
+}
+
 Result<Choice> PoissonDisk::choose(const ThinningInput& input) const {
   const std::int64_t spacing_ms = min_time_spacing_ ? duration_ms_from_iso8601(*min_time_spacing_).value_or(0) : 0;
+  const double spacing_km = horizontal_spacing_km();
   Choice choice;
   std::vector<std::uint32_t> order = order_of(input, shuffle_, static_cast<std::uint64_t>(random_seed_));
-  if (min_horizontal_spacing_km_ > 0 || spacing_ms > 0) {
-    const std::vector<double> places = scaled_places(input.observations, min_horizontal_spacing_km_, spacing_ms);
+  if (spacing_km > 0 || spacing_ms > 0) {
+    const std::vector<double> places = scaled_places(input.observations, spacing_km, spacing_ms);
     const KdTree tree(places, kDimension);
     // The ball around the cylinder: its radius and half its height are 1.
-    const double reach =
-        shape_ == Shape::cylinder && min_horizontal_spacing_km_ > 0 && spacing_ms > 0 ? std::numbers::sqrt2 : 1;
+    const double reach = shape_ == Shape::cylinder && spacing_km > 0 && spacing_ms > 0 ? std::numbers::sqrt2 : 1;
     std::vector<std::uint8_t> is_excluded(input.size(), 0);
     std::vector<Neighbour> found;
     for (const std::uint32_t i : order) {

@@ -9,9 +9,9 @@ namespace thin {
 // first; category_variable and priority_variable are options of all methods here. O(n log n + pairs within reach of
 // the retained).
 //
-// Distances are UFO's: on a sphere of 6371.0 km, from geodetic latitudes. What differs: min_horizontal_spacing has a
-// default (there nothing is thinned without one), and random_seed too (there it comes from the clock, and no two runs
-// give the same).
+// Distances are UFO's: on a sphere of 6371.0 km, from geodetic latitudes. What differs: without any
+// spacing 100 km is taken (there nothing is thinned then), and random_seed has a default (there it comes from the
+// clock, and no two runs give the same).
 //
 // Left out: spacings that differ by priority (thin by category_variable instead), min_vertical_spacing, sort_vertical
 // and the pressure options (a sounding has no height of its own), select_median and write_median (a median of all
@@ -30,7 +30,9 @@ class PoissonDisk : public ThinningMethod {
   Result<Choice> choose(const ThinningInput& input) const override;
 
  private:
-  double min_horizontal_spacing_km_ = 100;
+  double horizontal_spacing_km() const;
+
+  std::optional<double> min_horizontal_spacing_km_;
   std::optional<std::string> min_time_spacing_;
   Shape shape_ = Shape::cylinder;
   bool shuffle_ = true;

@@ -104,6 +104,15 @@ TEST(PoissonDisk, RetainsAllWhereNothingCounts) {
   EXPECT_EQ(test::retained(test::thinner("poisson_disk", {{"min_horizontal_spacing", 0.0}}), set).size(), 50U);
 }
 
+TEST(PoissonDisk, PlaceCountsWithoutAnySpacingOrWithItsOwn) {
+  const ObservationSet set = test::random_observations(300, 1, 5);  // a minute
+  const auto with = [&](const Options& options) { return test::retained(test::thinner("poisson_disk", options), set); };
+  EXPECT_EQ(with({}), with({{"min_horizontal_spacing", 100.0}}));
+  EXPECT_EQ(with({{"min_time_spacing", std::string("PT10S")}}),
+            with({{"min_time_spacing", std::string("PT10S")}, {"min_horizontal_spacing", 0.0}}));
+  EXPECT_LE(with({{"min_time_spacing", std::string("PT10S")}}).size(), 6U);
+}
+
 TEST(PoissonDisk, RefusesWhatIsNoDuration) {
   for (const char* wrong : {"1 hour", "PT0S"}) {
     const auto conflict = test::thinner("poisson_disk", {{"min_time_spacing", std::string(wrong)}}).conflict();

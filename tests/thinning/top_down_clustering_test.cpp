@@ -105,6 +105,18 @@ TEST(TopDownClustering, RetainsByPriority) {
   EXPECT_GT(mean(with), 5.5);
 }
 
+TEST(TopDownClustering, TimeCountsAsADistance) {
+  ObservationSet set = test::random_observations(200, 1, 8), later = set;
+  for (std::int64_t& time_ms : later.time_ms) time_ms += 3 * 3'600'000;
+  set.append(later);
+  const auto early = [&](double time_scale) {
+    const Retained retained = clustered(set, 40, {{"time_scale_km_per_hour", time_scale}});
+    return std::count_if(retained.begin(), retained.end(), [](std::uint32_t i) { return i < 200; });
+  };
+  EXPECT_EQ(early(0), 40);  // every place twice, and of two the first
+  EXPECT_NEAR(static_cast<double>(early(5000)), 20, 4);
+}
+
 TEST(TopDownClustering, InstrumentsShareNoCluster) {
   ObservationSet amsua = test::random_observations(100, 2, 6), mhs = test::random_observations(300, 1, 7);
   amsua.instrument.assign(100, Instrument::amsua);
