@@ -11,6 +11,7 @@
 #include "libthin/foundation/parallel.h"
 #include "libthin/tools/commands.h"
 #include "libthin/tools/evaluation_report.h"
+#include "libthin/tools/option_text.h"
 
 namespace thin {
 namespace {
@@ -19,7 +20,24 @@ struct Arguments {
   std::string configuration, json, csv, costs;
   std::vector<std::string> files;
   std::optional<std::uint64_t> shuffle;
+  bool show_keys = false;
 };
+
+template <class Options>
+void print_section(const char* name, const char* explanation) {
+  Options options;
+  OptionTable table;
+  options.declare(table);
+  fmt::print("{}: {}\n{}", name, explanation, options_text(table));
+}
+
+int show_keys() {
+  print_section<EvaluationOptions>("[evaluate]", "what is compared, and how it is measured");
+  print_section<VariantKeys>("[[evaluate.variant]]", "a method with options; as many as wanted");
+  print_section<SyntheticOptions>("[synthetic]", "made-up observations instead of files");
+  fmt::print("[input], [preparation] and [run] are as for thin run.\n");
+  return 0;
+}
 
 Result<ObservationSet> observations_of(const Arguments& arguments, const EvaluationSettings& settings) {
   const bool made_up = settings.synthetic.source != SyntheticOptions::Source::none;
@@ -63,6 +81,9 @@ Result<void> write_files(const Arguments& arguments, const Evaluation& evaluatio
 }
 
 Result<int> run(const Arguments& arguments) {
+  if (arguments.show_keys) return show_keys();
+  if (arguments.configuration.empty())
+    return Error{ErrorKind::configuration, "name a configuration with -c; --keys shows what it may hold"};
   const Result<EvaluationSettings> settings = read_evaluation_settings(arguments.configuration);
   if (!settings) return settings.error();
   const ThreadLimit limit(settings->threads);
@@ -94,7 +115,8 @@ void add_evaluate_command(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand(
       "evaluate", "compare methods over numbers to retain: errors, separations, densities, seconds, memory");
   const auto arguments = std::make_shared<Arguments>();
-  command->add_option("-c,--config", arguments->configuration, "configuration file (TOML) with [evaluate]")->required();
+  command->add_option("-c,--config", arguments->configuration, "configuration file (TOML) with [evaluate]");
+  command->add_flag("--keys", arguments->show_keys, "show the keys of the configuration, and do nothing else");
   command->add_option("--json", arguments->json, "write the results here; the same bytes each time");
   command->add_option("--csv", arguments->csv, "write a line for each result here; the same bytes each time");
   command->add_option("--costs", arguments->costs, "write seconds and memory here (CSV)");

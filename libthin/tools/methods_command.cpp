@@ -8,33 +8,18 @@
 
 #include "libthin/thinning/thinner.h"
 #include "libthin/tools/commands.h"
+#include "libthin/tools/option_text.h"
 
 namespace thin {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string limits_of(const OptionFacts& facts) {
-  std::vector<std::string> limits;
-  if (facts.above) limits.push_back(fmt::format("> {:g}", *facts.above));
-  if (facts.minimum) limits.push_back(fmt::format(">= {:g}", *facts.minimum));
-  if (facts.maximum) limits.push_back(fmt::format("<= {:g}", *facts.maximum));
-  if (!facts.choices.empty()) limits.push_back(fmt::format("{}", fmt::join(facts.choices, " | ")));
-  return fmt::format("{}", fmt::join(limits, ", "));
-}
-
 void print_method(const MethodEntry& entry) {
   Thinner thinner(entry);
   OptionTable table;
   thinner.declare_options(table);
-  fmt::print("{}\n  {}\n  Source: {}\n", entry.name, entry.summary, entry.source);
-  for (const Option& option : table.options()) {
-    const std::string limits = limits_of(option.facts);
-    fmt::print("    {:<24} {:<8} default {:<8}{}{}\n", option.name, option.type, option.default_value,
-               option.facts.unit.empty() ? "" : "  unit: " + option.facts.unit,
-               limits.empty() ? "" : "  (" + limits + ")");
-    fmt::print("    {:<24} {}\n", "", option.facts.explanation);
-  }
+  fmt::print("{}\n  {}\n  Source: {}\n{}", entry.name, entry.summary, entry.source, options_text(table));
 }
 
 Json method_json(const MethodEntry& entry) {
@@ -47,7 +32,7 @@ Json method_json(const MethodEntry& entry) {
                                {"type", option.type},
                                {"default", option.default_value},
                                {"unit", option.facts.unit},
-                               {"limits", limits_of(option.facts)},
+                               {"limits", limits_text(option.facts)},
                                {"explanation", option.facts.explanation}});
   return json;
 }
