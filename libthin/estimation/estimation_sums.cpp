@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
 
 #include "libthin/estimation/lanes.h"
 #include "libthin/foundation/parallel.h"
@@ -13,6 +16,9 @@ constexpr std::uint32_t kFreshAfter = 256;
 
 // Beyond this, a in the multiplied-out change costs more digits than can be spared.
 constexpr double kLargestFactor = 32;
+
+constexpr std::size_t kRowsAhead = 4;
+constexpr std::size_t kCacheLineBytes = 64;
 
 constexpr std::uint32_t kNobody = 0xffffffff;
 
@@ -26,8 +32,84 @@ THIN_VECTOR_CLONES double dot_product(const double* x, const double* y, std::siz
   return dot(x, y, width);
 }
 
-THIN_VECTOR_CLONES void add_multiple(double* sums, const double* value, double weight, std::size_t width) {
+inline __attribute__((always_inline)) void add_multiple(double* sums, const double* value, double weight,
+                                                        std::size_t width) {
   for (std::size_t c = 0; c < width; c += kLaneCount) store(load(sums + c) + load(value + c) * weight, sums + c);
+}
+
+// What of a point follows from its sums.
+inline __attribute__((always_inline)) void complete(PointSums& point, const double* sums, const double* reference,
+                                                    std::size_t width) {
+  point.one_over_weight_sum = point.retained_count > 0 ? 1 / point.weight_sum : 0;
+  point.mean_squared = dot(sums, sums, width) * point.one_over_weight_sum * point.one_over_weight_sum;
+  point.mean_by_deviation = point.mean_squared - dot(sums, reference, width) * point.one_over_weight_sum;
+}
+
+THIN_VECTOR_CLONES void complete_point(PointSums& point, const double* sums, const double* reference,
+                                       std::size_t width) {
+  complete(point, sums, reference, width);
+}
+
+// Sums of the retained among some pairs; returns Z.
+THIN_VECTOR_CLONES double sum_pairs(const std::uint32_t* observation, const double* weight, std::uint32_t count,
+                                    const std::uint8_t* retained, const double* values, std::size_t width,
+                                    double* sums) {
+  double weight_sum = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!retained[observation[i]]) continue;
+    weight_sum += weight[i];
+    add_multiple(sums, values + observation[i] * width, weight[i], width);
+  }
+  return weight_sum;
+}
+
+// The points and weights of a column, for the loops over it.
+struct Reach {
+  const std::uint32_t* points;
+  const double* weights;
+  std::size_t size;
+};
+using AtPlace = std::function<void(std::size_t)>;
+
+// Brings the points that an observation reaches up to date with its change of state. afresh(i): sums the i-th anew.
+THIN_VECTOR_CLONES void update_reached(const Reach& reach, PointSums* points, double* value_sums,
+                                       const double* references, const double* value, std::size_t width, bool retained,
+                                       std::uint32_t step, const AtPlace& afresh) {
+  for (std::size_t i = 0; i < reach.size; ++i) {
+    const std::uint32_t q = reach.points[i];
+    PointSums& point = points[q];
+    const double weight = retained ? reach.weights[i] : -reach.weights[i];
+    point.retained_count += retained ? 1 : -1;
+    point.changed_at = step;
+    point.weight_sum += weight;
+    point.largest_weight_sum = std::max(point.largest_weight_sum, point.weight_sum);
+    if (++point.updates == kFreshAfter || point.weight_sum < 0.5 * point.largest_weight_sum)
+      afresh(i);
+    else
+      add_multiple(value_sums + q * width, value, weight, width);
+    complete(point, value_sums + q * width, references + q * width, width);
+  }
+}
+
+// What an observation changing its state would change at each point that it reaches. careful(i): the i-th, where the
+// multiplied-out form won't do.
+THIN_VECTOR_CLONES void changes_of_reached(const Reach& reach, const PointSums* points, const double* value_sums,
+                                           const double* references, const double* value, double square,
+                                           std::size_t width, bool retained, double* changes, const AtPlace& careful) {
+  for (std::size_t i = 0; i < reach.size; ++i) {
+    const std::uint32_t q = reach.points[i];
+    const PointSums& point = points[q];
+    const double weight = reach.weights[i];
+    const double a = retained ? weight / (point.weight_sum - weight) : -weight / (point.weight_sum + weight);
+    if (retained && (point.retained_count < 2 || !(a <= kLargestFactor))) {
+      careful(i);
+      continue;
+    }
+    const double mean_by_value = dot(value_sums + q * width, value, width) * point.one_over_weight_sum;
+    const double along = point.mean_by_deviation - mean_by_value + dot(references + q * width, value, width);
+    const double distance = point.mean_squared - 2 * mean_by_value + square;
+    changes[i] = a * (2 * along + a * distance);
+  }
 }
 
 // across() of four at once, to the same bits.
@@ -41,6 +123,7 @@ inline __attribute__((always_inline)) Lanes across_each(const Lanes& a, const La
 
 struct Row {
   const double* value_sum;
+  const double* deviation;
   double weight_sum;
   double one_over_weight_sum;
   double mean_squared;
@@ -48,94 +131,117 @@ struct Row {
   std::uint32_t size;
   const std::uint32_t* observation;
   const double* weight;
-  const double* cross;
+  double* change;  // cached
 };
 
-// The inner loop of full updating, for `Lanes` pairs from i on: the change that each would cause, and its factor a.
+struct Observations {
+  const double* values;
+  const double* squares;
+  double* increments;
+  std::size_t width;
+};
+
+// The change that each of four pairs would cause, multiplied out; `factor` becomes their a.
 template <std::size_t Width, bool Retained>
 inline __attribute__((always_inline)) Lanes changes(const Row& row, const std::uint32_t* observation,
-                                                    const double* weights, const double* crosses, const double* values,
-                                                    const double* squares, std::size_t any_width, Lanes& factor) {
-  const std::size_t width = Width ? Width : any_width;
-  Lanes products[kLaneCount] = {};
+                                                    const double* weights, const Observations& all, Lanes& factor) {
+  const std::size_t width = Width ? Width : all.width;
+  Lanes products[kLaneCount] = {}, deviating[kLaneCount] = {};
   Lanes square;
   for (std::size_t lane = 0; lane < kLaneCount; ++lane) {
-    const double* value = values + observation[lane] * width;
-    for (std::size_t c = 0; c < width; c += kLaneCount) products[lane] += load(row.value_sum + c) * load(value + c);
-    square[lane] = squares[observation[lane]];
+    const double* value = all.values + observation[lane] * width;
+    for (std::size_t c = 0; c < width; c += kLaneCount) {
+      products[lane] += load(row.value_sum + c) * load(value + c);
+      deviating[lane] += load(row.deviation + c) * load(value + c);
+    }
+    square[lane] = all.squares[observation[lane]];
   }
   const Lanes mean_by_value = across_each(products[0], products[1], products[2], products[3]) * row.one_over_weight_sum;
   const Lanes weight = load(weights);
   factor = Retained ? weight / (row.weight_sum - weight) : -weight / (row.weight_sum + weight);
-  const Lanes along = row.mean_by_deviation - mean_by_value + load(crosses);
+  const Lanes along = row.mean_by_deviation - across_each(deviating[0], deviating[1], deviating[2], deviating[3]);
   const Lanes distance = row.mean_squared - 2 * mean_by_value + square;
   return factor * (2 * along + factor * distance);
 }
 
-// Of all pairs of the row, into `result` and `factors` (with room for whole groups of lanes).
-template <std::size_t Width, bool Retained>
-inline __attribute__((always_inline)) void row_changes(const Row& row, const double* values, const double* squares,
-                                                       std::size_t width, double* result, double* factors) {
-  Lanes factor;
+inline __attribute__((always_inline)) bool any_beyond(const Lanes& factor) {
+  return !(factor[0] <= kLargestFactor && factor[1] <= kLargestFactor && factor[2] <= kLargestFactor &&
+           factor[3] <= kLargestFactor);
+}
+
+// The inner loop of full updating: makes the changes of the row's pairs right, and moves the increments by what they
+// differ from the cached ones. Whose change fell is written to `fallen`, with room for all; returns how many these are.
+// careful(i): the change of the i-th pair, where the multiplied-out form won't do.
+template <std::size_t Width, bool Retained, class Careful>
+inline __attribute__((always_inline)) std::size_t refresh(const Row& row, const Observations& all,
+                                                          const Careful& careful, std::uint32_t* fallen) {
+  std::size_t fallen_count = 0;
+  // The pairs from i on: `count` of them count, the arrays hold four.
+  const auto take = [&](std::uint32_t i, std::uint32_t count, const std::uint32_t* observation, const double* weight,
+                        double* cached) __attribute__((always_inline)) {
+    Lanes factor;
+    Lanes now = changes<Width, Retained>(row, observation, weight, all, factor);
+    if (Retained && any_beyond(factor))
+      for (std::uint32_t lane = 0; lane < count; ++lane)
+        if (!(factor[lane] <= kLargestFactor)) now[lane] = careful(i + lane);
+    const Lanes difference = now - load(cached);
+    store(now, cached);
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      all.increments[observation[lane]] += difference[lane];
+      fallen[fallen_count] = observation[lane];
+      fallen_count += difference[lane] < 0;
+    }
+  };
   std::uint32_t i = 0;
-  for (; i + kLaneCount <= row.size; i += kLaneCount) {
-    store(changes<Width, Retained>(row, row.observation + i, row.weight + i, row.cross + i, values, squares, width,
-                                   factor),
-          result + i);
-    store(factor, factors + i);
-  }
-  if (i == row.size) return;
+  for (; i + kLaneCount <= row.size; i += kLaneCount)
+    take(i, kLaneCount, row.observation + i, row.weight + i, row.change + i);
+  if (i == row.size) return fallen_count;
   std::uint32_t observation[kLaneCount];
-  double weight[kLaneCount], cross[kLaneCount];
+  double weight[kLaneCount], cached[kLaneCount];
   for (std::uint32_t lane = 0; lane < kLaneCount; ++lane) {
     const std::uint32_t pair = std::min(i + lane, row.size - 1);
     observation[lane] = row.observation[pair];
     weight[lane] = row.weight[pair];
-    cross[lane] = row.cross[pair];
+    cached[lane] = row.change[pair];
   }
-  store(changes<Width, Retained>(row, observation, weight, cross, values, squares, width, factor), result + i);
-  store(factor, factors + i);
-}
-
-template <bool Retained>
-inline __attribute__((always_inline)) void row_changes(const Row& row, const double* values, const double* squares,
-                                                       std::size_t width, double* result, double* factors) {
-  switch (width) {
-    case 4:
-      return row_changes<4, Retained>(row, values, squares, width, result, factors);
-    case 8:
-      return row_changes<8, Retained>(row, values, squares, width, result, factors);
-    case 12:
-      return row_changes<12, Retained>(row, values, squares, width, result, factors);
-    case 16:
-      return row_changes<16, Retained>(row, values, squares, width, result, factors);
-    default:
-      return row_changes<0, Retained>(row, values, squares, width, result, factors);
-  }
-}
-
-THIN_VECTOR_CLONES void changes_of_retained(const Row& row, const double* values, const double* squares,
-                                            std::size_t width, double* result, double* factors) {
-  row_changes<true>(row, values, squares, width, result, factors);
-}
-THIN_VECTOR_CLONES void changes_of_given_up(const Row& row, const double* values, const double* squares,
-                                            std::size_t width, double* result, double* factors) {
-  row_changes<false>(row, values, squares, width, result, factors);
-}
-
-// Moves the increments by what the changes differ from the cached ones, which they replace. Whose change fell is
-// appended to `fallen`; returns how many these are.
-std::size_t move_increments(const std::uint32_t* observation, const double* now, std::uint32_t count, double* cached,
-                            double* increments, std::uint32_t* fallen) {
-  std::size_t fallen_count = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const double difference = now[i] - cached[i];
-    increments[observation[i]] += difference;
-    cached[i] = now[i];
-    fallen[fallen_count] = observation[i];
-    fallen_count += difference < 0;
-  }
+  take(i, row.size - i, observation, weight, cached);
+  for (std::uint32_t lane = 0; i + lane < row.size; ++lane) row.change[i + lane] = cached[lane];
   return fallen_count;
+}
+
+template <bool Retained, class Careful>
+inline __attribute__((always_inline)) std::size_t refresh(const Row& row, const Observations& all,
+                                                          const Careful& careful, std::uint32_t* fallen) {
+  switch (all.width) {
+    case 4:
+      return refresh<4, Retained>(row, all, careful, fallen);
+    case 8:
+      return refresh<8, Retained>(row, all, careful, fallen);
+    case 12:
+      return refresh<12, Retained>(row, all, careful, fallen);
+    case 16:
+      return refresh<16, Retained>(row, all, careful, fallen);
+    default:
+      return refresh<0, Retained>(row, all, careful, fallen);
+  }
+}
+
+using CarefulChange = std::function<double(std::uint32_t)>;
+
+THIN_VECTOR_CLONES std::size_t refresh_retained(const Row& row, const Observations& all, const CarefulChange& careful,
+                                                std::uint32_t* fallen) {
+  return refresh<true>(row, all, careful, fallen);
+}
+THIN_VECTOR_CLONES std::size_t refresh_given_up(const Row& row, const Observations& all, const CarefulChange& careful,
+                                                std::uint32_t* fallen) {
+  return refresh<false>(row, all, careful, fallen);
+}
+
+// Where p stands among these. Without a way out, so that it is a few vector comparisons. REQUIRES: once
+THIN_VECTOR_CLONES std::uint32_t place_of(std::uint32_t p, const std::uint32_t* observation, std::uint32_t count) {
+  std::uint32_t place = 0;
+  for (std::uint32_t i = 0; i < count; ++i) place |= observation[i] == p ? i : 0;
+  return place;
 }
 
 }  // namespace
@@ -155,7 +261,7 @@ EstimationSums::EstimationSums(NeighbourhoodTable table, std::span<const double>
   const std::size_t points = table.row_begin.size() - 1;
   squares_.resize(table.observations);
   for (std::size_t p = 0; p < table.observations; ++p)
-    squares_[p] = product(values_.data() + p * width_, values_.data() + p * width_);
+    squares_[p] = dot_product(values_.data() + p * width_, values_.data() + p * width_, width_);
   points_.resize(points);
   value_sums_.resize(points * width_);
   references_.assign(points * width_, 0.0);
@@ -173,7 +279,7 @@ EstimationSums::EstimationSums(NeighbourhoodTable table, std::span<const double>
         points_[q].weight_sum = points_[q].largest_weight_sum = 0;
         std::fill_n(value_sums_.begin() + static_cast<std::ptrdiff_t>(q * width_), width_, 0.0);
       }
-      update_point(q);
+      complete_point(points_[q], &value_sums_[q * width_], &references_[q * width_], width_);
     }
   });
   if (start == Start::with_all) return;
@@ -188,33 +294,14 @@ EstimationSums::Column EstimationSums::column(std::uint32_t p) const {
           column_begin_[p + 1] - column_begin_[p]};
 }
 
-double EstimationSums::product(const double* a, const double* b) const {
-  return dot_product(a, b, width_);
-}
-
 void EstimationSums::sum_afresh(std::size_t q) {
-  Point& point = points_[q];
+  PointSums& point = points_[q];
   double* sums = value_sums_.data() + q * width_;
   std::fill(sums, sums + width_, 0.0);
-  point.weight_sum = 0;
-  for (std::uint64_t i = point.row_begin; i < point.row_begin + point.row_size; ++i) {
-    const std::uint32_t p = pair_observation_[i];
-    if (!retained_[p]) continue;
-    point.weight_sum += pair_weight_[i];
-    add_multiple(sums, values_.data() + p * width_, pair_weight_[i], width_);
-  }
+  point.weight_sum = sum_pairs(&pair_observation_[point.row_begin], &pair_weight_[point.row_begin], point.row_size,
+                               retained_.data(), values_.data(), width_, sums);
   point.largest_weight_sum = point.weight_sum;
   point.updates = 0;
-}
-
-// What of a point follows from its sums.
-void EstimationSums::update_point(std::size_t q) {
-  Point& point = points_[q];
-  const double* sums = value_sums_.data() + q * width_;
-  point.one_over_weight_sum = point.retained_count > 0 ? 1 / point.weight_sum : 0;
-  point.mean_squared = product(sums, sums) * point.one_over_weight_sum * point.one_over_weight_sum;
-  point.mean_by_deviation =
-      point.mean_squared - product(sums, references_.data() + q * width_) * point.one_over_weight_sum;
 }
 
 // Brings the retained of every row to its front.
@@ -232,20 +319,18 @@ void EstimationSums::part_rows() {
   });
 }
 
-// Across the border between the retained and the others. REQUIRES: parted rows; p's state has changed, the point's
-// count has not
+// Across the border between the retained and the others. REQUIRES: p's state and the point's count have changed, and
+// otherwise the rows are parted
 void EstimationSums::move_pair(std::size_t q, std::uint32_t p) {
-  const Point& point = points_[q];
+  const PointSums& point = points_[q];
   const bool to_front = retained_[p];
-  const auto row = pair_observation_.begin() + static_cast<std::ptrdiff_t>(point.row_begin);
-  const auto place = point.row_begin +
-                     static_cast<std::uint64_t>(std::find(row + (to_front ? point.retained_count : 0),
-                                                          row + (to_front ? point.row_size : point.retained_count), p) -
-                                                row);
-  const std::uint64_t border = point.row_begin + (to_front ? point.retained_count : point.retained_count - 1);
+  // The place that the border has moved over: the last of the front now, or the first behind it.
+  const std::uint64_t border = point.row_begin + point.retained_count - (to_front ? 1 : 0);
+  const std::uint64_t begin = to_front ? border : point.row_begin;
+  const std::uint64_t end = to_front ? point.row_begin + point.row_size : border + 1;
+  const std::uint64_t place = begin + place_of(p, &pair_observation_[begin], static_cast<std::uint32_t>(end - begin));
   std::swap(pair_observation_[place], pair_observation_[border]);
   std::swap(pair_weight_[place], pair_weight_[border]);
-  std::swap(pair_cross_[place], pair_cross_[border]);
   std::swap(pair_change_[place], pair_change_[border]);
   pair_change_[border] = 0;
 }
@@ -253,7 +338,7 @@ void EstimationSums::move_pair(std::size_t q, std::uint32_t p) {
 // The error at q with `out` given up and `in` retained (either may be kNobody), less the error now.
 double EstimationSums::change_to(std::size_t q, double weight_sum, std::uint32_t out, double weight_out,
                                  std::uint32_t in, double weight_in) const {
-  const Point& point = points_[q];
+  const PointSums& point = points_[q];
   double before = 0, after = 0;
   for (std::size_t c = 0; c < width_; ++c) {
     double sum = value_sums_[q * width_ + c];
@@ -269,56 +354,46 @@ double EstimationSums::change_to(std::size_t q, double weight_sum, std::uint32_t
 }
 
 double EstimationSums::careful_pair_change(std::size_t q, std::uint32_t p, double weight) const {
-  const Point& point = points_[q];
+  const PointSums& point = points_[q];
   if (!retained_[p]) return change_to(q, point.weight_sum + weight, kNobody, 0, p, weight);
   return change_to(q, point.retained_count > 1 ? point.weight_sum - weight : 0, p, weight, kNobody, 0);
 }
 
-double EstimationSums::pair_change(std::size_t q, std::uint32_t p, double weight) const {
-  const Point& point = points_[q];
-  const double* value = values_.data() + p * width_;
-  const double factor = retained_[p] ? weight / (point.weight_sum - weight) : -weight / (point.weight_sum + weight);
-  if ((retained_[p] && point.retained_count < 2) || !(std::abs(factor) <= kLargestFactor))
-    return careful_pair_change(q, p, weight);
-  const double mean_by_value = product(value_sums_.data() + q * width_, value) * point.one_over_weight_sum;
-  const double along = point.mean_by_deviation - mean_by_value + product(references_.data() + q * width_, value);
-  const double distance = point.mean_squared - 2 * mean_by_value + squares_[p];
-  return factor * (2 * along + factor * distance);
+void EstimationSums::column_changes(std::uint32_t p, const Column& near, std::vector<double>& result) const {
+  if (result.size() < near.size) result.resize(near.size);
+  const auto careful = [&](std::size_t i) { result[i] = careful_pair_change(near.points[i], p, near.weights[i]); };
+  changes_of_reached({near.points, near.weights, near.size}, points_.data(), value_sums_.data(), references_.data(),
+                     values_.data() + p * width_, squares_[p], width_, retained_[p], result.data(), std::cref(careful));
 }
 
-void EstimationSums::refresh_pairs(std::size_t q, std::uint32_t begin, std::uint32_t end, bool retained) {
-  const Point& point = points_[q];
+void EstimationSums::refresh_pairs(std::size_t q, std::uint32_t begin, std::uint32_t end, bool retained,
+                                   double* changes) {
   if (begin == end) return;
+  const PointSums& point = points_[q];
   const std::uint64_t first = point.row_begin + begin;
   const std::uint32_t size = end - begin;
-  const Row row{value_sums_.data() + q * width_,
-                point.weight_sum,
-                point.one_over_weight_sum,
-                point.mean_squared,
-                point.mean_by_deviation,
-                size,
-                &pair_observation_[first],
-                &pair_weight_[first],
-                &pair_cross_[first]};
-  if (changes_.size() < size + kLaneCount) {
-    changes_.resize(2 * size + kLaneCount);
-    factors_.resize(2 * size + kLaneCount);
-  }
-  (retained ? changes_of_retained : changes_of_given_up)(row, values_.data(), squares_.data(), width_, changes_.data(),
-                                                         factors_.data());
-  if (retained)
-    for (std::uint32_t i = 0; i < size; ++i)
-      if (point.retained_count < 2 || !(factors_[i] <= kLargestFactor))
-        changes_[i] = careful_pair_change(q, row.observation[i], row.weight[i]);
   if (fallen_.size() < fallen_count_ + size) fallen_.resize(2 * (fallen_count_ + size));
-  fallen_count_ += move_increments(row.observation, changes_.data(), size, &pair_change_[first], increments_.data(),
-                                   fallen_.data() + fallen_count_);
+  for (std::size_t c = 0; c < width_; ++c)
+    deviation_[c] = value_sums_[q * width_ + c] * point.one_over_weight_sum - references_[q * width_ + c];
+  const Row row{value_sums_.data() + q * width_, deviation_.data(),
+                // With one left, taking it out leaves none: not a number leads to careful_pair_change.
+                retained && point.retained_count < 2 ? std::numeric_limits<double>::quiet_NaN() : point.weight_sum,
+                point.one_over_weight_sum, point.mean_squared, point.mean_by_deviation, size, &pair_observation_[first],
+                &pair_weight_[first], changes};
+  const Observations all{values_.data(), squares_.data(), increments_.data(), width_};
+  const auto careful = [&](std::uint32_t i) { return careful_pair_change(q, row.observation[i], row.weight[i]); };
+  // Called by name each: through a pointer the clones would not be chosen from.
+  std::uint32_t* fallen = fallen_.data() + fallen_count_;
+  fallen_count_ += retained ? refresh_retained(row, all, std::cref(careful), fallen)
+                            : refresh_given_up(row, all, std::cref(careful), fallen);
 }
 
 void EstimationSums::refresh_row(std::size_t q) {
-  const Point& point = points_[q];
-  if (track_ != Track::given_up) refresh_pairs(q, 0, point.retained_count, true);
-  if (track_ != Track::retained) refresh_pairs(q, point.retained_count, point.row_size, false);
+  const PointSums& point = points_[q];
+  const std::uint64_t border = point.row_begin + point.retained_count;
+  if (track_ != Track::given_up) refresh_pairs(q, 0, point.retained_count, true, &pair_change_[point.row_begin]);
+  if (track_ != Track::retained)
+    refresh_pairs(q, point.retained_count, point.row_size, false, pair_change_.data() + border);
 }
 
 void EstimationSums::track(Track which) {
@@ -326,16 +401,35 @@ void EstimationSums::track(Track which) {
   if (which == Track::nothing) return;
   part_rows();
   pair_change_.assign(pair_observation_.size(), 0.0);
-  pair_cross_.resize(pair_observation_.size());
-  parallel_ranges(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t q = begin; q < end; ++q)
-      for (std::uint64_t i = points_[q].row_begin; i < points_[q].row_begin + points_[q].row_size; ++i)
-        pair_cross_[i] = product(references_.data() + q * width_, values_.data() + pair_observation_[i] * width_);
-  });
+  deviation_.resize(width_);
   std::fill(increments_.begin(), increments_.end(), 0.0);
   for (std::size_t q = 0; q < points_.size(); ++q) {
     fallen_count_ = 0;
     refresh_row(q);
+  }
+}
+
+// Asks for the memory of a row, which lies far from the one before.
+void EstimationSums::fetch(std::size_t q) const {
+  const auto lines = [](const auto* from, std::size_t count) {
+    const auto* bytes = reinterpret_cast<const char*>(from);
+    for (std::size_t i = 0; i < count * sizeof(*from); i += kCacheLineBytes) __builtin_prefetch(bytes + i);
+  };
+  const PointSums& point = points_[q];
+  const std::uint64_t begin = point.row_begin + (track_ == Track::given_up ? point.retained_count : 0);
+  const std::size_t size = track_ == Track::retained ? point.retained_count : point.row_begin + point.row_size - begin;
+  lines(&pair_observation_[begin], size);
+  lines(&pair_weight_[begin], size);
+  lines(&pair_change_[begin], size);
+}
+
+void EstimationSums::compute_increments() {
+  std::fill(increments_.begin(), increments_.end(), 0.0);
+  deviation_.resize(width_);
+  for (std::size_t q = 0; q < points_.size(); ++q) {
+    changes_.assign(points_[q].row_size, 0.0);
+    fallen_count_ = 0;
+    refresh_pairs(q, 0, points_[q].row_size, points_[q].retained_count > 0, changes_.data());
   }
 }
 
@@ -351,50 +445,45 @@ void EstimationSums::change_state(std::uint32_t p) {
   increments_[p] = 0;
   fallen_count_ = 0;
   ++step_;
+  const auto afresh = [&](std::size_t i) { sum_afresh(reached_[i]); };
+  update_reached({reached_.data(), reached_weight_.data(), reached_.size()}, points_.data(), value_sums_.data(),
+                 references_.data(), values_.data() + p * width_, width_, retained, step_, std::cref(afresh));
+  if (track_ == Track::nothing) return;
   for (std::size_t i = 0; i < reached_.size(); ++i) {
-    const std::uint32_t q = reached_[i];
-    Point& point = points_[q];
-    if (track_ != Track::nothing) move_pair(q, p);
-    const double weight = retained ? reached_weight_[i] : -reached_weight_[i];
-    point.retained_count += retained ? 1 : -1;
-    point.changed_at = step_;
-    point.weight_sum += weight;
-    point.largest_weight_sum = std::max(point.largest_weight_sum, point.weight_sum);
-    if (++point.updates == kFreshAfter || point.weight_sum < 0.5 * point.largest_weight_sum)
-      sum_afresh(q);
-    else
-      add_multiple(value_sums_.data() + q * width_, values_.data() + p * width_, weight, width_);
-    update_point(q);
-    if (track_ != Track::nothing) refresh_row(q);
+    if (i + kRowsAhead < reached_.size()) fetch(reached_[i + kRowsAhead]);
+    move_pair(reached_[i], p);
+    refresh_row(reached_[i]);
   }
 }
 
 double EstimationSums::increment(std::uint32_t p) const {
   const Column near = column(p);
+  column_changes(p, near, changes_);
   double sum = 0;
-  for (std::size_t i = 0; i < near.size; ++i) sum += pair_change(near.points[i], p, near.weights[i]);
+  for (std::size_t i = 0; i < near.size; ++i) sum += changes_[i];
   return sum;
 }
 
 double EstimationSums::swap_increment(std::uint32_t out, std::uint32_t in) {
   weight_out_.resize(points_.size(), 0.0);
   const Column near_out = column(out), near_in = column(in);
+  column_changes(out, near_out, changes_out_);
+  column_changes(in, near_in, changes_);
   for (std::size_t i = 0; i < near_out.size; ++i) weight_out_[near_out.points[i]] = near_out.weights[i];
   double sum = 0;
   for (std::size_t i = 0; i < near_in.size; ++i) {
     const std::uint32_t q = near_in.points[i];
     const double weight_in = near_in.weights[i], weight_out = weight_out_[q];
     weight_out_[q] = 0;
-    if (weight_out > 0)
-      sum += change_to(q, (points_[q].retained_count > 1 ? points_[q].weight_sum - weight_out : 0) + weight_in, out,
-                       weight_out, in, weight_in);
-    else
-      sum += pair_change(q, in, weight_in);
+    sum += weight_out > 0
+               ? change_to(q, (points_[q].retained_count > 1 ? points_[q].weight_sum - weight_out : 0) + weight_in, out,
+                           weight_out, in, weight_in)
+               : changes_[i];
   }
   for (std::size_t i = 0; i < near_out.size; ++i) {
-    const std::uint32_t q = near_out.points[i];
-    if (weight_out_[q] > 0) sum += pair_change(q, out, near_out.weights[i]);
-    weight_out_[q] = 0;
+    double& weight_out = weight_out_[near_out.points[i]];
+    if (weight_out > 0) sum += changes_out_[i];
+    weight_out = 0;
   }
   return sum;
 }
@@ -416,7 +505,7 @@ std::vector<std::uint32_t> EstimationSums::retained() const {
 
 std::uint32_t EstimationSums::observation_near(std::uint32_t p, double which_point, double which_pair) const {
   const Column near = column(p);
-  const Point& point = points_[near.points[static_cast<std::size_t>(which_point * static_cast<double>(near.size))]];
+  const PointSums& point = points_[near.points[static_cast<std::size_t>(which_point * static_cast<double>(near.size))]];
   return pair_observation_[point.row_begin + static_cast<std::uint64_t>(which_pair * point.row_size)];
 }
 

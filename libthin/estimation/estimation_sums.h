@@ -7,10 +7,9 @@
 // a = -w / (Z_q + w). With nothing retained the estimate is 0. The increment of p is what changing its state adds to
 // |Q| E: the sum of these over the evaluation points within reach of p.
 //
-// Multiplied out, the change is  2a (d.m - m.f + r.f) + a² (m.m - 2 m.f + f.f):  of its products d.m and m.m belong to
-// the point, f.f to the observation, r.f to the pair and never changes, so that one product over the channels is left,
-// S_q.f. Where a is large, and the multiplied-out form loses digits, the change is taken from the two estimates
-// instead.
+// Multiplied out, the change is  2a (d.m - d.f) + a² (m.m - 2 m.f + f.f):  of its products d.m and m.m belong to the
+// point and f.f to the observation, so that two are left to take over the channels, with two lines of memory for each
+// pair. Where a is large, and the multiplied-out form loses digits, the change is taken from the two estimates instead.
 //
 // With tracking, the pairs of a row stand with the retained in front, the change at q that each would cause is cached,
 // and increments follow it by differences, four pairs at a time.
@@ -28,6 +27,20 @@
 #include "libthin/estimation/neighbourhood_table.h"
 
 namespace thin {
+
+// What is kept of one evaluation point beside S and r.
+struct PointSums {
+  std::uint64_t row_begin;
+  std::uint32_t row_size;
+  std::uint32_t retained_count;
+  std::uint32_t changed_at;
+  std::uint32_t updates;       // since summed afresh
+  double weight_sum;           // Z
+  double largest_weight_sum;   // since summed afresh
+  double one_over_weight_sum;  // 0 where nothing is retained
+  double mean_squared;         // m.m
+  double mean_by_deviation;    // m.d
+};
 
 class EstimationSums {
  public:
@@ -50,6 +63,10 @@ class EstimationSums {
 
   // The same, straight from the sums: equal to rounding, at the cost of the channels.
   double increment(std::uint32_t p) const;
+
+  // Those of all at once, sooner than one by one; read with tracked_increment until the first change of state.
+  // REQUIRES: all are retained, or none
+  void compute_increments();
 
   // What giving up `out` and retaining `in` together would add to |Q| E.
   // REQUIRES: is_retained(out), !is_retained(in)
@@ -76,18 +93,6 @@ class EstimationSums {
   double value_sum(std::size_t q, std::size_t channel) const { return value_sums_[q * width_ + channel]; }
 
  private:
-  struct Point {
-    std::uint64_t row_begin;
-    std::uint32_t row_size;
-    std::uint32_t retained_count;
-    std::uint32_t changed_at;
-    std::uint32_t updates;  // since summed afresh
-    double weight_sum;
-    double largest_weight_sum;   // since then
-    double one_over_weight_sum;  // 0 where nothing is retained
-    double mean_squared;         // m.m
-    double mean_by_deviation;    // m.d
-  };
   struct Column {
     const std::uint32_t* points;
     const double* weights;
@@ -96,27 +101,27 @@ class EstimationSums {
 
   Column column(std::uint32_t p) const;
   void sum_afresh(std::size_t q);
-  void update_point(std::size_t q);
+  void update_points(std::uint32_t p);
   void part_rows();
   void move_pair(std::size_t q, std::uint32_t p);
-  double product(const double* a, const double* b) const;
-  double pair_change(std::size_t q, std::uint32_t p, double weight) const;
+  // What p changing its state would change at each point of its column.
+  void column_changes(std::uint32_t p, const Column& near, std::vector<double>& result) const;
   double careful_pair_change(std::size_t q, std::uint32_t p, double weight) const;
   double change_to(std::size_t q, double weight_sum, std::uint32_t out, double weight_out, std::uint32_t in,
                    double weight_in) const;
+  void fetch(std::size_t q) const;
   void refresh_row(std::size_t q);
-  void refresh_pairs(std::size_t q, std::uint32_t begin, std::uint32_t end, bool retained);
+  void refresh_pairs(std::size_t q, std::uint32_t begin, std::uint32_t end, bool retained, double* changes);
 
   std::size_t width_;               // channels, padded to whole groups of lanes
   std::vector<double> values_;      // n x width
   std::vector<double> squares_;     // n: f.f
   std::vector<double> references_;  // |Q| x width: est_P0
   std::vector<double> value_sums_;  // |Q| x width: S
-  std::vector<Point> points_;
+  std::vector<PointSums> points_;
   // Pairs by evaluation point.
   std::vector<std::uint32_t> pair_observation_;
   std::vector<double> pair_weight_;
-  std::vector<double> pair_cross_;   // r.f; while tracked
   std::vector<double> pair_change_;  // that changing the observation's state would cause there; while tracked
 
   // Pairs by observation; empty where the table is symmetric: then column p is row p.
@@ -132,8 +137,9 @@ class EstimationSums {
   std::size_t fallen_count_ = 0;
   std::vector<std::uint32_t> reached_;  // scratch: the column of the observation that changes state
   std::vector<double> reached_weight_;
-  std::vector<double> changes_, factors_;  // scratch: of the pairs of one row
-  std::vector<double> weight_out_;         // scratch of swap_increment: of each point, its weight for `out`, or 0
+  std::vector<double> deviation_;                      // scratch: d of one point
+  mutable std::vector<double> changes_, changes_out_;  // scratch: of a column
+  std::vector<double> weight_out_;  // scratch of swap_increment: of each point, its weight for `out`, or 0
   std::uint32_t step_ = 0;
 };
 

@@ -99,7 +99,10 @@ void remove_crowded(EstimationSums& sums, const GreedyGoal& goal, Update update,
 }  // namespace
 
 void remove_greedily(EstimationSums& sums, const GreedyGoal& goal, Update update, std::vector<std::uint32_t>* order) {
-  if (update == Update::full) sums.track(EstimationSums::Track::retained);
+  if (update == Update::full)
+    sums.track(EstimationSums::Track::retained);
+  else
+    sums.compute_increments();
   const auto order_of_strata = strata(sums.observation_count(), goal.priority, true);
   if (goal.separation && goal.separation->is_demanded()) remove_crowded(sums, goal, update, order_of_strata, order);
   ErrorLimit limit(sums, goal.error_sum);
@@ -118,7 +121,10 @@ void remove_greedily(EstimationSums& sums, const GreedyGoal& goal, Update update
 }
 
 void insert_greedily(EstimationSums& sums, const GreedyGoal& goal, Update update, std::vector<std::uint32_t>* order) {
-  if (update == Update::full) sums.track(EstimationSums::Track::given_up);
+  if (update == Update::full)
+    sums.track(EstimationSums::Track::given_up);
+  else
+    sums.compute_increments();
   ErrorLimit limit(sums, goal.error_sum);
   std::vector<std::uint8_t> too_near(sums.observation_count(), 0);
   for (const auto& stratum : strata(sums.observation_count(), goal.priority, false)) {

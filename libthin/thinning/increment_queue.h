@@ -22,7 +22,7 @@ enum class Update {
 
 class IncrementQueue {
  public:
-  // With full updating `sums` must track the increments of what is queued.
+  // `sums` must track the increments of what is queued, or with lazy updating have computed them all at first.
   IncrementQueue(const EstimationSums& sums, Update update)
       : sums_(sums), update_(update), queue_(sums.observation_count()), keys_(sums.observation_count(), kAbsent) {
     if (update == Update::lazy) valid_at_.assign(sums.observation_count(), 0);
@@ -31,7 +31,8 @@ class IncrementQueue {
   bool empty() const { return queue_.empty(); }
 
   void add(std::uint32_t p) {
-    keys_[p] = update_ == Update::full ? sums_.tracked_increment(p) : sums_.increment(p);
+    const bool is_known = update_ == Update::full || sums_.step() == 0;
+    keys_[p] = is_known ? sums_.tracked_increment(p) : sums_.increment(p);
     queue_.push(p, keys_[p]);
     if (update_ == Update::lazy) valid_at_[p] = sums_.step();
   }
