@@ -48,6 +48,7 @@ ObservationSet orbit_innovations(std::size_t count, std::uint64_t seed, bool noi
       const std::int64_t line_begin_ms = kBeginMs + line * kAmsuaLineMs;
       const auto views = amsua_scan_line(orbit, line_begin_ms);
       for (int fov = 1; fov <= kAmsuaFieldsOfView && set.size() < count; ++fov) {
+        if ((line + fov) % 2 != 0) continue;
         const FieldOfView& view = views[static_cast<std::size_t>(fov - 1)];
         if (land_fraction(view.latitude_deg, view.longitude_deg) > 0.5) continue;
         ChannelValues values = atmosphere.measurement_k(view, {orbit.platform(), line_begin_ms, fov},
