@@ -101,10 +101,14 @@ def draw_curves(axes, evaluation, measure, labels=None, title=None, names=None):
     text, logarithmic = MEASURES[measure]
     if logarithmic:
         axes.set_yscale("log")
+        axes.yaxis.set_major_locator(ticker.LogLocator(base=10, subs=(1, 2, 5)))
+        axes.yaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _position: f"{value:g}"))
+        axes.yaxis.set_minor_formatter(ticker.NullFormatter())
     axes.set_xscale("log")
     axes.xaxis.set_major_locator(ticker.LogLocator(base=10, subs=(1, 2, 5)))
     axes.xaxis.set_major_formatter(ticker.FuncFormatter(thousands))
     axes.xaxis.set_minor_formatter(ticker.NullFormatter())
+    axes.tick_params(labelsize=8.5)
     axes.set_xlabel("retained observations")
     axes.set_ylabel(text)
     axes.grid(which="both", color="#e3e6e8", linewidth=0.6)
@@ -123,12 +127,19 @@ def curves(panels, output, title, columns):
         draw_curves(slot, evaluation, measure, labels, name)
     for slot in slots.flat[len(panels):]:
         slot.set_visible(False)
-    # One legend where all panels show the same lines, else one each.
-    legends = [tuple(slot.get_legend_handles_labels()[1]) for slot in slots.flat[: len(panels)]]
-    for slot in slots.flat[: 1 if len(set(legends)) == 1 else len(panels)]:
-        slot.legend(fontsize=8.5, frameon=False)
+    # One legend below where all panels show the same lines, else one each.
+    handles = [slot.get_legend_handles_labels() for slot in slots.flat[: len(panels)]]
+    shared = len({tuple(labels) for _, labels in handles}) == 1
+    if shared:
+        across = min(len(handles[0][1]), max(2, round(1.9 * columns)))
+        below = 0.24 * -(-len(handles[0][1]) // across) / figure.get_figheight()
+        figure.legend(*handles[0], loc="lower center", ncol=across, fontsize=9, frameon=False)
+    else:
+        below = 0
+        for slot in slots.flat[: len(panels)]:
+            slot.legend(fontsize=8.5, frameon=False)
     figure.suptitle(title, fontsize=13, x=0.01, ha="left")
-    figure.tight_layout()
+    figure.tight_layout(rect=(0, below, 1, 1))
     save(figure, output)
 
 
@@ -175,6 +186,7 @@ def density(evaluation, labels, output, title):
 
 def places(panels, output, title, columns=4):
     """panels: (evaluation, label or None for the full set, title): where the observations of a small set lie."""
+    columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)
     figure, slots = plt.subplots(rows, columns, figsize=(3.35 * columns, 3.45 * rows + 1.0), squeeze=False)
     points = None
@@ -199,8 +211,9 @@ def places(panels, output, title, columns=4):
     for slot in slots[-1]:
         slot.set_xlabel("east, km", fontsize=9)
     figure.suptitle(title, fontsize=13, x=0.01, ha="left")
-    figure.tight_layout(rect=(0, 0.07, 1, 1))
-    bar = figure.colorbar(points, cax=figure.add_axes((0.3, 0.055, 0.4, 0.018)), orientation="horizontal")
+    height = figure.get_figheight()
+    figure.tight_layout(rect=(0, 0.65 / height, 1, 1))
+    bar = figure.colorbar(points, cax=figure.add_axes((0.3, 0.5 / height, 0.4, 0.12 / height)), orientation="horizontal")
     bar.set_label("value, K", fontsize=9)
     bar.ax.tick_params(labelsize=8)
     save(figure, output)
