@@ -25,8 +25,11 @@ PICTURES = ROOT / "docs/results/thinning"
 DATA = pathlib.Path(os.environ.get("THIN_SHARED_DATA", ROOT / "../shared/data")).resolve() / "observations"
 REAL = DATA / "ioda/amsua_n19.20211211T210000Z.nc4"
 
-N = 27367
-COUNTS = [1000, 2000, 3000, 5000, 15000, 25000]
+QUICK = "--quick" in sys.argv  # a trial of this script: a small set, few numbers, no repetitions
+N = 4000 if QUICK else 27367
+COUNTS = [200, 300, 500, 800, 2000, 3000] if QUICK else [1000, 2000, 3000, 5000, 15000, 25000]
+FEW, MIDDLE, MANY = COUNTS[0], COUNTS[2], COUNTS[3]
+LEVEL = 6 if QUICK else 8  # of the common grid
 EEA = ["eea", "top_down_eea", "grid_eea", "grid_top_down_eea"]
 # Table 6.1 of the thesis: seconds on a 2.8 GHz Pentium 4 or the like, by numbers retained as in COUNTS.
 THESIS_SECONDS = {
@@ -40,7 +43,6 @@ THESIS_SECONDS = {
     "grid_eea, lazy": [0.87, 0.83, 0.78, 0.74, 0.44, 0.14],
     "grid_top_down_eea, lazy": [0.47, 0.56, 0.62, 0.72, 0.98, 1.2],
 }
-QUICK = "--quick" in sys.argv  # a trial of the script: few numbers, no repetitions, no growth beyond 100,000
 
 problems = []
 page = []
@@ -199,10 +201,9 @@ def less(evaluation, a, b, where):
 def table_6_1():
     variants = "".join(variant(m, f"{m}, {update}", update=update) for update in ("full", "lazy") for m in EEA)
     configuration = ORBITS + ONE_THREAD + section(
-        "evaluate", counts=COUNTS[:3] if QUICK else COUNTS, bandwidth_km=100, level=6 if QUICK else 8,
-        repetitions=REPETITIONS)
+        "evaluate", counts=COUNTS, bandwidth_km=100, level=LEVEL, repetitions=REPETITIONS)
     run = Evaluation("table-6.1", configuration + variant("top_down_clustering") + variants)
-    counts = COUNTS[:3] if QUICK else COUNTS
+    counts = COUNTS
 
     say("## Table 6.1: seconds", "",
         f"{N:,} made-up observations, h = 100 km, level 6, one thread; medians of {REPETITIONS}. In brackets the thesis's seconds, of a",
@@ -222,12 +223,12 @@ def table_6_1():
     goals = [("eea, full", 1.0), ("grid_eea, full", 0.3)] + [(f"{m}, lazy", 0.1) for m in EEA] + [("top_down_clustering", 0.1)]
     rows = []
     for label, goal in goals:
-        ours = run.seconds(label, 3000)
+        ours = run.seconds(label, MIDDLE)
         if ours is not None:
             theirs = THESIS_SECONDS[label][2]
             rows.append([label, seconds_text(ours), f"{goal:g}", "yes" if ours < goal else "no", f"{theirs:g}",
                          f"{theirs / ours:,.0f}"])
-    say(f"{N:,} to 3,000 beside what was asked for:", "")
+    say(f"{N:,} to {MIDDLE:,} beside what was asked for:", "")
     table(["", "s", "goal: less than, s", "reached", "thesis, s", "thesis / ours"], rows)
 
     first, last = counts[0], counts[-1]
@@ -239,17 +240,17 @@ def table_6_1():
         + listed([f"{significant(ratio(label))} ({label})" for label in insertion]) + " times.")
     say("- Removal takes less the more is retained: ours falls to "
         + listed([f"{significant(ratio(label))} ({label})" for label in removal]) + " of it.")
-    speed = lambda m: run.seconds(f"{m}, full", 3000) / run.seconds(f"{m}, lazy", 3000)  # noqa: E731
+    speed = lambda m: run.seconds(f"{m}, full", MIDDLE) / run.seconds(f"{m}, lazy", MIDDLE)  # noqa: E731
     said = lambda m: THESIS_SECONDS[f"{m}, full"][2] / THESIS_SECONDS[f"{m}, lazy"][2]  # noqa: E731
-    say("- Lazy updating is faster than full, at 3,000 by "
+    say(f"- Lazy updating is faster than full, at {MIDDLE:,} by "
         + listed([f"{significant(speed(m))} ({m}; thesis {significant(said(m), 2)})" for m in EEA])
         + " times. Full updating here corrects only the increments that fell, and others at the front of the queue, so that there is less to save.")
-    grid = lambda u: run.seconds(f"eea, {u}", 3000) / run.seconds(f"grid_eea, {u}", 3000)  # noqa: E731
-    say(f"- The grid is faster than the observations: removal to 3,000 by {significant(grid('full'))} (full; thesis 1.7) "
+    grid = lambda u: run.seconds(f"eea, {u}", MIDDLE) / run.seconds(f"grid_eea, {u}", MIDDLE)  # noqa: E731
+    say(f"- The grid is faster than the observations: removal to {MIDDLE:,} by {significant(grid('full'))} (full; thesis 1.7) "
         f"and {significant(grid('lazy'))} times (lazy; thesis 5.5).", "")
 
     say("### E of the same sets", "",
-        "K², at the observations (6.11) / on the grid G8 (6.12), h = 100 km.".replace("G8", "G6" if QUICK else "G8"), "")
+        f"K², at the observations (6.11) / on the grid G{LEVEL} (6.12), h = 100 km.", "")
     table(["retained"] + [f"{count:,}" for count in counts],
           [[label] + [f"{error_text(run.error(label, c, 'error_at_observations'))} / {error_text(run.error(label, c))}"
                       for c in counts] for label in run.labels()])
@@ -340,9 +341,9 @@ def all_methods_table(run, counts, unit_note):
 
 
 def all_methods():
-    counts = [1000, 3000, 5000]
+    counts = [FEW, MIDDLE, MANY]
     plain = "".join(variant(method) for method in METHODS)
-    configuration = ORBITS + ONE_THREAD + section("evaluate", counts=counts, bandwidth_km=100, level=6 if QUICK else 8)
+    configuration = ORBITS + ONE_THREAD + section("evaluate", counts=counts, bandwidth_km=100, level=LEVEL)
     run = Evaluation("all-methods", configuration + plain + refined_variants("eea") + refined_variants("grid_eea"))
     say("## All methods on the made-up set", "")
     all_methods_table(run, counts, (
@@ -386,7 +387,7 @@ def refinement(run, counts, is_asked_for):
 
 
 def noise(noisy, counts):
-    count = 3000
+    count = MIDDLE
     plain = "".join(variant(method) for method in METHODS)
     configuration = section("synthetic", source="orbits", count=N, noise=False) + section(
         "evaluate", counts=[count], bandwidth_km=100, level=6)
@@ -441,12 +442,10 @@ def stepwise_count():
 
 
 def figures_6_9_and_6_10():
-    counts = {50: [1000, 2000, 3000, 5000, 7000, 10000, 15000, 20000], 100: [1000, 2000, 3000, 5000, 7000, 10000, 15000, 20000],
-              200: [1000, 2000, 3000, 5000, 10000, 20000]}
+    dense = COUNTS if QUICK else [1000, 2000, 3000, 5000, 7000, 10000, 15000, 20000]
+    counts = {50: dense, 100: dense, 200: COUNTS if QUICK else [1000, 2000, 3000, 5000, 10000, 20000]}
     runs = {}
     for bandwidth in (50, 100, 200):
-        if QUICK:
-            counts[bandwidth] = [1000, 5000]
         configuration = ORBITS + section("evaluate", counts=counts[bandwidth], bandwidth_km=bandwidth, level=6)
         runs[bandwidth] = Evaluation(f"figure-6.9-{bandwidth}", configuration + variant("top_down_clustering")
                                      + variant("eea", update="lazy" if bandwidth == 200 else "full") + variant("stepwise"))
@@ -489,7 +488,7 @@ def beats_stepwise(run, label, where):
 
 
 def figure_6_11():
-    counts = [1000, 5000] if QUICK else [1000, 3000, 5000, 10000]
+    counts = COUNTS[:4] if QUICK else [1000, 3000, 5000, 10000]
     levels = [4, 5, 6] if QUICK else [4, 5, 6, 7, 8]
     configuration = ORBITS + section("evaluate", counts=counts, bandwidth_km=100, level=levels[-1])
     run = Evaluation("figure-6.11", configuration + variant("eea")
@@ -501,7 +500,7 @@ def figure_6_11():
     label = lambda level: f"grid_eea, level {level}"  # noqa: E731
     table(["retained"] + [f"{c:,}" for c in counts],
           [[name] + [error_text(run.error(name, c)) for c in counts] for name in run.labels()])
-    top, at = levels[-1], 3000 if 3000 in counts else counts[0]
+    top, at = levels[-1], MIDDLE
     over = {level: run.error(label(level), at) / run.error(label(top), at) - 1 for level in levels}
     say(f"- Thesis: level 6 is satisfying already, level 7 marginally better. Ours at {at:,}: above the E of level {top} by "
         + listed([f"{percent(over[level])} (level {level})" for level in levels[:-1]]) + ".")
@@ -510,20 +509,21 @@ def figure_6_11():
 
 
 def figure_6_16():
-    source = section("synthetic", source="gradient", count=10000, noise=False)
-    clusters = Evaluation("figure-6.16-clustering", source + section("evaluate", counts=[1000], errors=False, list_retained=True)
+    number, retained = (2000, 200) if QUICK else (10000, 1000)
+    source = section("synthetic", source="gradient", count=number, noise=False)
+    clusters = Evaluation("figure-6.16-clustering", source + section("evaluate", counts=[retained], errors=False, list_retained=True)
                           + "".join(variant("top_down_clustering", f"alpha = {a}", alpha_km_per_k=a) for a in (0, 100, 300)))
     runs = {}
     for h in (50, 100, 200):
-        runs[h] = Evaluation(f"figure-6.16-{h}", source + section("evaluate", counts=[1000], bandwidth_km=h, errors=False, list_retained=True)
+        runs[h] = Evaluation(f"figure-6.16-{h}", source + section("evaluate", counts=[retained], bandwidth_km=h, errors=False, list_retained=True)
                              + variant("eea", f"EEA, h = {h} km", update="lazy"))
     panels = [(clusters.json, None, "(a) full data set")]
     panels += [(clusters.json, label, f"({letter}) clustering, {label.replace('alpha', 'α')} km/K")
                for letter, label in zip("bcd", [label for label in clusters.labels() if label.startswith("alpha")])]
     panels += [(runs[h].json, runs[h].labels()[0], f"({letter}) {runs[h].labels()[0]}") for letter, h in zip("efg", runs)]
-    plots.places(panels, PICTURES / "figure-6.16.png", "An artificial gradient: 10,000 random observations, 1,000 retained")
+    plots.places(panels, PICTURES / "figure-6.16.png", f"An artificial gradient: {number:,} random observations, {retained:,} retained")
     say("## Figure 6.16: an artificial gradient", "",
-        "10,000 random points in a square of 1,000 km; values rise from -1 to 1 K within the 200 km in the middle (the thesis does not say by how "
+        f"{number:,} random points in a square of 1,000 km; values rise from -1 to 1 K within the 200 km in the middle (the thesis does not say by how "
         "much), without noise. EEA by lazy updating: at h = 200 km nearly all observations see each other.", "")
     picture("figure-6.16.png", "Thinnings near an artificial gradient")
     rows = []
@@ -549,13 +549,13 @@ def figure_6_16():
 
 
 def real_innovations():
-    counts = [1000, 3000] if QUICK else [500, 1000, 2000, 3000, 4000, 5000]
-    shown = [1000, 3000] if QUICK else [500, 1000, 3000, 5000]
+    counts = [500, 3000] if QUICK else [500, 1000, 2000, 3000, 4000, 5000]
+    shown = counts if QUICK else [500, 1000, 3000, 5000]
     head = section("input", platform="NOAA-19") + real_preparation() + ONE_THREAD
     plain = "".join(variant(method) for method in METHODS)
     say("## Real innovations", "")
     runs = {}
-    for h in (150, 200, 300):
+    for h in (200,) if QUICK else (150, 200, 300):
         configuration = head + section("evaluate", counts=counts, bandwidth_km=h, level=6 if QUICK or h == 300 else 7, reference="box",
                                        repetitions=REPETITIONS if h == 200 else 1)
         refined = refined_variants("eea") if h == 200 else ""
@@ -589,7 +589,7 @@ def real_innovations():
 
 
 def growth():
-    sizes = [27367, 100000] if QUICK else [27367, 100000, 300000, 1000000]
+    sizes = [3000, 10000] if QUICK else [27367, 100000, 300000, 1000000]
     say("## Growth", "",
         "Observations on a spiral over the whole Earth, one in ten retained, h such that each has about 45 neighbours within 3h; two threads. `eea`.", "")
     rows, series = [], {"eea, full": ([], []), "eea, lazy": ([], [])}
@@ -632,7 +632,7 @@ def independence():
     body += "".join(variant(m, f"{m}, lazy", update="lazy") for m in EEA)
     body += refined_variants("eea").replace("effort = 4", "effort = 2")
     rows = []
-    for name, head, files, count in (("made-up", ORBITS, [], 3000), ("real", real_preparation(), [REAL], 1000)):
+    for name, head, files, count in (("made-up", ORBITS, [], MIDDLE), ("real", real_preparation(), [REAL], 1000)):
         level = 6
         options = section("evaluate", counts=[count], bandwidth_km=100 if name == "made-up" else 200, level=level, list_retained=True)
         one, two, shuffled = (
