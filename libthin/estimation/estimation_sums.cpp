@@ -418,9 +418,9 @@ void EstimationSums::fetch(std::size_t q) const {
   const PointSums& point = points_[q];
   const std::uint64_t begin = point.row_begin + (track_ == Track::given_up ? point.retained_count : 0);
   const std::size_t size = track_ == Track::retained ? point.retained_count : point.row_begin + point.row_size - begin;
-  lines(&pair_observation_[begin], size);
-  lines(&pair_weight_[begin], size);
-  lines(&pair_change_[begin], size);
+  lines(pair_observation_.data() + begin, size);
+  lines(pair_weight_.data() + begin, size);
+  lines(pair_change_.data() + begin, size);
 }
 
 void EstimationSums::compute_increments() {
