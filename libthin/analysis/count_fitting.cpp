@@ -19,6 +19,7 @@ constexpr DensityOption kDensityOptions[] = {{"horizontal_mesh", 1, 20000},
                                              {"value_tolerance", 1e-3, 1e3}};
 constexpr DensityOption kAnyOption = {"", 1e-3, 20000};
 constexpr double kPrecision = 1.001;
+constexpr double kMostSteps = 60;
 
 }  // namespace
 
@@ -51,8 +52,7 @@ Result<double> fit_to_count(const Thinner& thinner, const OptionTable& options, 
   const auto known = std::find_if(std::begin(kDensityOptions), std::end(kDensityOptions),
                                   [&](const DensityOption& each) { return each.name == name; });
   const DensityOption limits = known == std::end(kDensityOptions) ? kAnyOption : *known;
-  double dense =
-      std::max(is_integer ? std::ceil(limits.least) : limits.least, option->facts.minimum.value_or(limits.least));
+  double dense = std::max(limits.least, option->facts.minimum.value_or(limits.least));
   double sparse = std::min(limits.largest, option->facts.maximum.value_or(limits.largest));
   std::optional<double> best;
   std::size_t best_miss = 0;
@@ -63,15 +63,20 @@ Result<double> fit_to_count(const Thinner& thinner, const OptionTable& options, 
     if (!best || miss < best_miss) best = value, best_miss = miss;
     return retained;
   };
-  for (const double end : {dense, sparse})
-    if (const auto tried = try_value(end); !tried) return tried.error();
-  while (best_miss > 0 && (is_integer ? sparse - dense > 1 : sparse / dense > kPrecision)) {
-    const double middle = is_integer ? std::floor(std::sqrt(dense * sparse)) : std::sqrt(dense * sparse);
-    // Between neighbours the geometric mean rounds down to the lower one.
-    const double value = middle > dense ? middle : dense + 1;
-    const auto retained = try_value(value);
+  if (is_integer) {
+    // Not by bisection: a pattern of observations may agree with one step better than with the one before.
+    for (double value = std::ceil(dense); value <= std::min(sparse, dense + kMostSteps); ++value)
+      if (const auto tried = try_value(value); !tried) return tried.error();
+    sparse = dense;
+  } else {
+    for (const double end : {dense, sparse})
+      if (const auto tried = try_value(end); !tried) return tried.error();
+  }
+  while (best_miss > 0 && sparse / dense > kPrecision) {
+    const double middle = std::sqrt(dense * sparse);
+    const auto retained = try_value(middle);
     if (!retained) return retained.error();
-    (*retained > count ? dense : sparse) = value;
+    (*retained > count ? dense : sparse) = middle;
   }
   if (const auto problem = assign(*best)) return Error{ErrorKind::internal, *problem};
   return *best;

@@ -14,9 +14,10 @@ namespace thin {
 // value_tolerance that it has. Nothing, where it has none.
 std::optional<std::string> density_option(const OptionTable& table);
 
-// Sets the numeric option so that the number retained comes nearest to `count`, by bisection: fewer are retained the
-// larger the option is. Numbers to 1 in 1,000. `options` are those of `thinner`. Returns the value. Thins up to 20
-// times. Errors: those of Thinner::thin; configuration, where there is no such option, or it is no number.
+// Sets the numeric option so that the number retained comes nearest to `count`: by bisection to 1 in 1,000, for fewer
+// are retained the larger the option is; of integers the 60 least are tried one by one. `options` are those of
+// `thinner`. Returns the value.
+// Errors: those of Thinner::thin; configuration, where there is no such option, or it is no number.
 Result<double> fit_to_count(const Thinner& thinner, const OptionTable& options, const std::string& name,
                             const ObservationSet& observations, std::size_t count);
 

@@ -143,8 +143,9 @@ TEST(SignalFree, WithoutNoiseIsWhereNothingVaries) {
   ASSERT_TRUE(flags);
   for (std::size_t i = 0; i < set.size(); ++i) {
     const double east_km = set.longitude_deg[i] * 111.2;
-    if (std::abs(east_km) < 90) EXPECT_FALSE((*flags)[i]) << east_km;
-    if (std::abs(east_km) > 290) EXPECT_TRUE((*flags)[i]) << east_km;  // 100 + 2 x 3h + a little
+    const bool varies = std::abs(east_km)<90, is_flat = std::abs(east_km)> 290;  // 100 + 2 x 3h + a little
+    if (!varies && !is_flat) continue;
+    EXPECT_EQ((*flags)[i] != 0, is_flat) << east_km;
   }
 }
 

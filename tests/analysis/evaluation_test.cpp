@@ -26,7 +26,7 @@ TEST(Evaluation, HasAPointForEachVariantAndNumber) {
   const ObservationSet set = test::random_observations(600, 2, 1);
   std::vector<Variant> variants;
   for (const char* method : {"eea", "box", "stepwise"}) variants.push_back(variant(method));
-  const EvaluationOptions options{.counts = {200, 50, 200}, .level = 4, .repetitions = 2};
+  const EvaluationOptions options{.methods = {}, .counts = {200, 50, 200}, .level = 4, .repetitions = 2};
   const auto evaluation = evaluated(set, variants, options);
   ASSERT_TRUE(evaluation) << evaluation.error().message;
   ASSERT_EQ(evaluation->results.size(), 6U);
@@ -52,7 +52,7 @@ TEST(Evaluation, AVariantThatTheObservationsDoNotFitLeavesTheOthers) {
   std::vector<Variant> variants;
   variants.push_back(variant("stepwise"));
   variants.push_back(variant("box"));
-  const auto evaluation = evaluated(set, variants, {.counts = {10}, .level = 3});
+  const auto evaluation = evaluated(set, variants, {.methods = {}, .counts = {10}, .level = 3});
   ASSERT_TRUE(evaluation);
   ASSERT_EQ(evaluation->failures.size(), 1U);
   EXPECT_EQ(evaluation->failures[0].variant, 0U);
@@ -67,7 +67,7 @@ TEST(Evaluation, AVariantWithoutFitRunsOnceAsItIs) {
   std::vector<Variant> variants;
   variants.push_back(variant("box"));
   variants[0].fit.clear();
-  const auto evaluation = evaluated(set, variants, {.counts = {10, 20}, .errors = false});
+  const auto evaluation = evaluated(set, variants, {.methods = {}, .counts = {10, 20}, .errors = false});
   ASSERT_TRUE(evaluation);
   ASSERT_EQ(evaluation->results.size(), 1U);
   EXPECT_FALSE(evaluation->results[0].asked);
