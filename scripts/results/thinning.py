@@ -180,7 +180,7 @@ def holds_at(counts, condition):
     known = [(count, value) for count, value in known if value is not None]
     true = [count for count, value in known if value]
     if not known:
-        return "not measured"
+        return "not to be said, for want of numbers that both have"
     if len(true) == len(known):
         return f"at every number ({listed([count for count, _ in known])})"
     return "at none of " + listed([c for c, _ in known]) if not true else \
@@ -207,7 +207,7 @@ def table_6_1():
 
     say("## Table 6.1: seconds", "",
         f"{N:,} made-up observations, h = 100 km, level 6, one thread; medians of {REPETITIONS}. In brackets the thesis's seconds, of a",
-        "2.8 GHz Pentium 4 or the like; how its h and channels' values were is not said there.", "")
+        "2.8 GHz Pentium 4 or the like; with which h is not said there.", "")
     rows = []
     for label, theirs in THESIS_SECONDS.items():
         if label in run.labels():
@@ -236,18 +236,18 @@ def table_6_1():
     removal = [label for label in run.labels() if "eea" in label and "top_down" not in label]
     ratio = lambda label: run.seconds(label, last) / run.seconds(label, first)  # noqa: E731
     say("What the thesis reads from its table, and whether ours says it:", "")
-    say(f"- Insertion takes longer the more is retained: from {first:,} to {last:,} ours grows by "
-        + listed([f"{significant(ratio(label))} ({label})" for label in insertion]) + " times.")
-    say("- Removal takes less the more is retained: ours falls to "
-        + listed([f"{significant(ratio(label))} ({label})" for label in removal]) + " of it.")
+    theirs = lambda label: THESIS_SECONDS[label][-1] / THESIS_SECONDS[label][0]  # noqa: E731
+    shown = lambda labels: listed([f"{significant(ratio(label))} ({label}; thesis {significant(theirs(label), 2)})" for label in labels])  # noqa: E731
+    say(f"- Thesis: insertion takes longer the more is retained. To {last:,} ours takes, in units of the time to {first:,}: {shown(insertion)}.")
+    say(f"- Thesis: removal takes less the more is retained. Ours, likewise: {shown(removal)}.")
     speed = lambda m: run.seconds(f"{m}, full", MIDDLE) / run.seconds(f"{m}, lazy", MIDDLE)  # noqa: E731
     said = lambda m: THESIS_SECONDS[f"{m}, full"][2] / THESIS_SECONDS[f"{m}, lazy"][2]  # noqa: E731
-    say(f"- Lazy updating is faster than full, at {MIDDLE:,} by "
+    say(f"- Thesis: lazy updating is faster by far. To {MIDDLE:,} our full updating takes, in units of the lazy one: "
         + listed([f"{significant(speed(m))} ({m}; thesis {significant(said(m), 2)})" for m in EEA])
-        + " times. Full updating here corrects only the increments that fell, and others at the front of the queue, so that there is less to save.")
+        + ". Full updating follows all increments by differences and puts right in the queue only those that fell, so that lazy updating has less to save.")
     grid = lambda u: run.seconds(f"eea, {u}", MIDDLE) / run.seconds(f"grid_eea, {u}", MIDDLE)  # noqa: E731
-    say(f"- The grid is faster than the observations: removal to {MIDDLE:,} by {significant(grid('full'))} (full; thesis 1.7) "
-        f"and {significant(grid('lazy'))} times (lazy; thesis 5.5).", "")
+    say(f"- Thesis: the grid is faster. Removal to {MIDDLE:,} at the observations takes, in units of that on the grid: "
+        f"{significant(grid('full'))} (full; thesis 1.7) and {significant(grid('lazy'))} (lazy; thesis 5.5).", "")
 
     say("### E of the same sets", "",
         f"K², at the observations (6.11) / on the grid G{LEVEL} (6.12), h = 100 km.", "")
@@ -464,8 +464,7 @@ def figures_6_9_and_6_10():
         lines.append("EEA less than stepwise " + beats_stepwise(run, "eea", where))
         say(f"- h = {h} km: " + "; ".join(lines) + ".")
     say("", "Thesis: clustering better than stepwise throughout; EEA best down to about 5,000 retained at h = 50 km, at h = 100 km also with fewer. "
-        "Numbers are compared as asked for; stepwise comes as near to them as whole steps allow, and where it retains more than asked, it is compared "
-        "with what it retains by interpolation of the other's curve.", "")
+        "Stepwise retains what whole steps give; there the other's curve is interpolated.", "")
     return runs
 
 
@@ -504,7 +503,7 @@ def figure_6_11():
     over = {level: run.error(label(level), at) / run.error(label(top), at) - 1 for level in levels}
     say(f"- Thesis: level 6 is satisfying already, level 7 marginally better. Ours at {at:,}: above the E of level {top} by "
         + listed([f"{percent(over[level])} (level {level})" for level in levels[:-1]]) + ".")
-    say(f"- Every grid of level 6 and more has less E on G{top} than EEA at the observations "
+    say(f"- Every grid from level 6 on has less E on G{top} than EEA at the observations "
         + holds_at(counts, lambda c: all(run.error(label(level), c) < run.error("eea", c) for level in levels if level >= 6)) + ".", "")
 
 
@@ -557,7 +556,7 @@ def real_innovations():
     runs = {}
     for h in (200,) if QUICK else (150, 200, 300):
         configuration = head + section("evaluate", counts=counts, bandwidth_km=h, level=6 if QUICK or h == 300 else 7, reference="box",
-                                       repetitions=REPETITIONS if h == 200 else 1)
+                                       repetitions=1)
         refined = refined_variants("eea") if h == 200 else ""
         runs[h] = Evaluation(f"real-{h}", configuration + plain + refined, [REAL])
     run = runs[200]
@@ -565,7 +564,7 @@ def real_innovations():
     say(f"AMSU-A on NOAA-19, 11 December 2021 21:00 to 03:00 UTC: ObsValue - GsiHofXBc where GsiEffectiveQC is 0, channels "
         f"{listed([str(c) for c in observations['channels']])} (those that nearly every location has), {observations['count']:,} of 9,238 locations; thinned "
         "to about 110 km before. The file has no scan lines, so that there is no stepwise thinning; `box` is the plain method to beat.", "")
-    all_methods_table(run, shown, f"h = 200 km, E on the grid G{6 if QUICK else 7}, one thread, medians of {REPETITIONS}. E of retaining nothing: "
+    all_methods_table(run, shown, f"h = 200 km, E on the grid G{6 if QUICK else 7}, one thread, single runs. E of retaining nothing: "
                       f"{error_text(observations['of_retaining_nothing_at_observations']['mean_squared_k2'])} K² at the observations. "
                       f"{percent(observations['signal_free_share'])} of all are in signal-free areas.")
     labels = [label for label in ("box", "top_down_clustering", *EEA) if label in run.labels()]
@@ -630,7 +629,7 @@ def independence():
     say("## The same whatever the threads and the order", "")
     body = "".join(variant(method) for method in METHODS)
     body += "".join(variant(m, f"{m}, lazy", update="lazy") for m in EEA)
-    body += refined_variants("eea").replace("effort = 4", "effort = 2")
+    body += "".join(variant("eea", f"eea + {label}", **keys) for label, keys in REFINED if "effort" not in keys and set(keys) <= METHODS["eea"])
     rows = []
     for name, head, files, count in (("made-up", ORBITS, [], MIDDLE), ("real", real_preparation(), [REAL], 1000)):
         level = 6
