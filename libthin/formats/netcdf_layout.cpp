@@ -88,7 +88,7 @@ Result<ExtractionSummary> extract_netcdf(std::span<const std::uint8_t> bytes, co
 
   Result<std::vector<std::uint8_t>> image = changes_nothing(*file, *edit)
                                                 ? std::vector<std::uint8_t>(bytes.begin(), bytes.end())
-                                                : rewrite_netcdf(*file, *edit);
+                                                : rewrite_netcdf(*file, *edit, output_path);
   if (!image) return image.error();
   if (const Result<void> written = write_file_bytes(output_path, *image); !written) return written.error();
   const Result<void> right = check_written(**layout, output_path, *edit);
