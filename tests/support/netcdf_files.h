@@ -55,6 +55,7 @@ struct IodaShape {
   std::size_t locations = 40, channels = 15;
   bool unlimited = true;
   bool first_guess = true;
+  bool temperatures = true;
 };
 
 // As JEDI's converters write today.
@@ -105,7 +106,7 @@ inline std::string write_ioda(const std::string& path, const IodaShape& shape = 
     cdl.end_group();
   };
   const std::string temperature = "float brightnessTemperature(Location, Channel)";
-  matrix("ObsValue", temperature, kelvin, each_value(n, k, observed_of));
+  if (shape.temperatures) matrix("ObsValue", temperature, kelvin, each_value(n, k, observed_of));
   matrix("PreQC", "int brightnessTemperature(Location, Channel)", {"_FillValue = -2147483647", "_Shuffle = \"true\""},
          each_value(n, k, [](std::size_t i, std::size_t c) { return is_rejected(i, c) ? 50.0 : 0.0; }));
   if (shape.first_guess)
