@@ -56,9 +56,7 @@ class Writer {
       check(nc_def_var(file_, name.c_str(), type, static_cast<int>(dimensions.size()), dimensions.data(), &id));
     if (good()) check(nc_def_var_deflate(file_, id, 1, 1, 4));
     const float missing = std::numeric_limits<float>::quiet_NaN();
-    const int none = kUnknownNumber;
     if (good() && type == NC_FLOAT) check(nc_put_att_float(file_, id, "_FillValue", NC_FLOAT, 1, &missing));
-    if (good() && type == NC_INT) check(nc_put_att_int(file_, id, "_FillValue", NC_INT, 1, &none));
     for (const auto& [attribute, text] : attributes) put_text(id, attribute, text);
     return id;
   }
@@ -68,6 +66,9 @@ class Writer {
   }
   void put(int id, const std::vector<int>& values) {
     if (good()) check(nc_put_var_int(file_, id, values.data()));
+  }
+  void fill_value(int id, int value) {
+    if (good()) check(nc_put_att_int(file_, id, "_FillValue", NC_INT, 1, &value));
   }
   void flag_values(int id, const std::vector<int>& values) {
     if (good()) check(nc_put_att_int(file_, id, "flag_values", NC_INT, values.size(), values.data()));
@@ -120,7 +121,9 @@ void write_all(Writer& file, const ObservationSet& set) {
   file.put(file.define("lon", NC_DOUBLE, obs, {{"standard_name", "longitude"}, {"units", "degrees_east"}}),
            set.longitude_deg);
   const auto identity = [&](const char* name, const char* meaning, const std::vector<int>& values) {
-    file.put(file.define(name, NC_INT, obs, {{"long_name", meaning}, {"coordinates", coordinates}}), values);
+    const int id = file.define(name, NC_INT, obs, {{"long_name", meaning}, {"coordinates", coordinates}});
+    file.fill_value(id, kUnknownNumber);
+    file.put(id, values);
   };
   identity("satellite_identifier", "WMO common code table C-5", numbers_of(set.platform));
   identity("scan_line", "number of the scan line", numbers_of(set.scan_line));

@@ -352,6 +352,9 @@ TEST_F(NetcdfOutputsTest, NothingRetainedWritesNothing) {
   ASSERT_TRUE(summary.ok());
   EXPECT_EQ(summary->messages, 0U);
   EXPECT_FALSE(std::filesystem::exists(path("out.nc")));
+  const auto flags = numbers_of<std::int32_t>(
+      test::read_all_variables(extract(file, {}, flag_mode())).at("ThinningQC/brightnessTemperature"));
+  EXPECT_EQ(flags, std::vector<long>(flags.size(), 16)) << "but with flags everything is flagged";
 }
 
 TEST_F(NetcdfOutputsTest, AFileThatHasShrunkSinceIsRefused) {
