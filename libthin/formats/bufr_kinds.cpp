@@ -18,8 +18,9 @@ struct NamedDescriptor {
   const char* remedy;  // null for the one of other_sensor_remedy()
 };
 
-constexpr const char* kRadiances = "Its radiances or principal components are no brightness temperatures; keep it out of "
-                                   "the inbox.";
+constexpr const char* kRadiances =
+    "Its radiances or principal components are no brightness temperatures; keep it out of "
+    "the inbox.";
 constexpr NamedDescriptor kOtherSounders[] = {
     {310060, 310060, "CrIS", kRadiances},
     {310013, 310013, "AVHRR", nullptr},
@@ -35,9 +36,9 @@ struct NamedNumber {
   const char* name;
 };
 constexpr NamedNumber kSensors[] = {{1, "MSU"}, {2, "SSU"}, {5, "AVHRR"}, {6, "SSM/I"}};
-constexpr NamedNumber kSatelliteInstruments[] = {{207, "SEVIRI"}, {221, "IASI"},      {420, "AIRS"}, {590, "AVHRR/2"},
+constexpr NamedNumber kSatelliteInstruments[] = {{207, "SEVIRI"},  {221, "IASI"},  {420, "AIRS"}, {590, "AVHRR/2"},
                                                  {591, "AVHRR/3"}, {616, "VIIRS"}, {620, "CrIS"}, {623, "MSU"},
-                                                 {627, "SSU"},  {905, "SSM/I"},      {908, "SSMIS"}};
+                                                 {627, "SSU"},     {905, "SSM/I"}, {908, "SSMIS"}};
 
 // BUFR table A, as its users speak of it.
 std::string category_name(int category) {
@@ -102,7 +103,8 @@ std::string number_of(const char* what, int number) {
 
 template <std::size_t n>
 std::string name_of(const NamedNumber (&names)[n], int number, const char* what) {
-  const auto found = std::find_if(std::begin(names), std::end(names), [&](const auto& name) { return name.number == number; });
+  const auto found =
+      std::find_if(std::begin(names), std::end(names), [&](const auto& name) { return name.number == number; });
   return (found == std::end(names) ? "another instrument" : found->name) + number_of(what, number);
 }
 
@@ -113,9 +115,9 @@ bool is_atms(const BufrHeader& header) {
 }
 
 bool may_hold_soundings(const BufrHeader& header, bool has_own_tables) {
-  const bool is_atovs =
-      std::any_of(header.descriptors.begin(), header.descriptors.end(),
-                  [](int descriptor) { return descriptor >= kHirsSequence && descriptor <= kAmsuBSequence; });
+  const bool is_atovs = std::any_of(header.descriptors.begin(), header.descriptors.end(), [](int descriptor) {
+    return descriptor >= kHirsSequence && descriptor <= kAmsuBSequence;
+  });
   if (is_atovs || is_atms(header)) return true;
   if (other_sounder(header)) return false;
   return has_own_tables || header.data_category == kSoundingsCategory || header.data_category == kRadiancesCategory;
@@ -142,9 +144,8 @@ MessageKind kind_of(const BufrHeader& header, bool has_own_tables) {
             "Send the tank as a whole: its first messages are the tables (data category 11)."};
   }
   if (const NamedDescriptor* sounder = other_sounder(header)) {
-    const int descriptor = *std::find_if(header.descriptors.begin(), header.descriptors.end(), [&](int one) {
-      return one >= sounder->first && one <= sounder->last;
-    });
+    const int descriptor = *std::find_if(header.descriptors.begin(), header.descriptors.end(),
+                                         [&](int one) { return one >= sounder->first && one <= sounder->last; });
     return {sounder->name + number_of("", descriptor), sounder->remedy ? sounder->remedy : other_sensor_remedy()};
   }
   if (header.descriptors.empty())

@@ -15,8 +15,8 @@ bool is_atms(const BufrHeader& header);
 // has_own_tables: the file brings tables, without which local descriptors say nothing.
 bool may_hold_soundings(const BufrHeader& header, bool has_own_tables);
 
-std::string sensor_name(int sensor);                 // "AVHRR (sensor 5)", of code table 002048
-std::string satellite_instrument_name(int number);   // "SSMIS (satellite instrument 908)", of common code table C-8
+std::string sensor_name(int sensor);                // "AVHRR (sensor 5)", of code table 002048
+std::string satellite_instrument_name(int number);  // "SSMIS (satellite instrument 908)", of common code table C-8
 
 struct MessageKind {
   std::string name;    // "SSMIS (310025)", "SYNOP or other surface data (data category 0)"

@@ -14,14 +14,10 @@ constexpr BufrSounder kSounders[] = {
 };
 
 constexpr BufrVariable kVariables[] = {
-    {5021, "satellite_azimuth_deg"},
-    {7024, "satellite_zenith_angle_deg"},
-    {7025, "solar_zenith_angle_deg"},
-    {10001, "surface_height_m"},
-    {33030, "scan_line_status_flags"},
-    {33031, "scan_line_quality_flags"},
-    {33033, "field_of_view_quality_flags"},
-    {33080, "scan_line_quality_flags"},  // ATMS
+    {5021, "satellite_azimuth_deg"},        {7024, "satellite_zenith_angle_deg"},
+    {7025, "solar_zenith_angle_deg"},       {10001, "surface_height_m"},
+    {33030, "scan_line_status_flags"},      {33031, "scan_line_quality_flags"},
+    {33033, "field_of_view_quality_flags"}, {33080, "scan_line_quality_flags"},  // ATMS
 };
 
 template <class Condition>

@@ -12,7 +12,7 @@ namespace thin {
 
 struct BufrSounder {
   Instrument instrument = Instrument::unknown;
-  int sensor = kUnknownNumber;                // code table 002048, of the ATOVS sequences 310008 to 310010
+  int sensor = kUnknownNumber;                 // code table 002048, of the ATOVS sequences 310008 to 310010
   std::array<int, 3> satellite_instruments{};  // common code table C-8 (002019), of ATMS and NCEP's tanks; 0 for none
   // Channel 1 in code table 002150, where TOVS' and ATOVS' channels are numbered on; elsewhere (005042) 1 is 1.
   int first_channel_code = kUnknownNumber;

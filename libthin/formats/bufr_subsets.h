@@ -1,7 +1,7 @@
 #pragma once
 
-// One BUFR message with fewer of its subsets. Numbers are never decoded to values: what is written is the bits that came,
-// so that every value of every key, missing ones, quality information and characters too, stays what it was.
+// One BUFR message with fewer of its subsets. Numbers are never decoded to values: what is written is the bits that
+// came, so that every value of every key, missing ones, quality information and characters too, stays what it was.
 
 #include <cstdint>
 #include <span>

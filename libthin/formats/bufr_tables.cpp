@@ -45,7 +45,7 @@ void add_element_line(std::string_view line, BufrTables& tables) {
   const auto reference = whole_number(next_part(line, '|'));
   const auto width = whole_number(next_part(line, '|'));
   if (!descriptor || !scale || !reference || !width || *width < 0) return;
-  const BufrElement::Kind kind = type == "string"                     ? BufrElement::Kind::text
+  const BufrElement::Kind kind = type == "string"                    ? BufrElement::Kind::text
                                  : type == "table" || type == "flag" ? BufrElement::Kind::code_or_flags
                                                                      : BufrElement::Kind::number;
   tables.add_element(static_cast<int>(*descriptor),
@@ -135,7 +135,8 @@ std::set<int> BufrTables::elements_within(std::span<const int> descriptors) cons
     open.pop_back();
     if (descriptor < 100'000) elements.insert(descriptor);
     if (descriptor < 300'000 || !seen.insert(descriptor).second) continue;
-    if (const std::vector<int>* members = sequence(descriptor)) open.insert(open.end(), members->begin(), members->end());
+    if (const std::vector<int>* members = sequence(descriptor))
+      open.insert(open.end(), members->begin(), members->end());
   }
   return elements;
 }

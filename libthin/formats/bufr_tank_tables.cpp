@@ -17,9 +17,9 @@ namespace {
 const std::shared_ptr<const BufrTables>& tables_of_tables() {
   static const std::shared_ptr<const BufrTables> tables = [] {
     auto made = std::make_shared<BufrTables>();
-    const std::pair<int, unsigned> widths_in_characters[] = {
-        {1, 3},   {2, 32},  {3, 32},  {4, 3},  {5, 2},  {10, 1},  {11, 2}, {12, 3},
-        {13, 32}, {14, 32}, {15, 24}, {16, 1}, {17, 3}, {18, 1}, {19, 10}, {20, 3}, {30, 6}};
+    const std::pair<int, unsigned> widths_in_characters[] = {{1, 3},  {2, 32}, {3, 32},  {4, 3},   {5, 2},   {10, 1},
+                                                             {11, 2}, {12, 3}, {13, 32}, {14, 32}, {15, 24}, {16, 1},
+                                                             {17, 3}, {18, 1}, {19, 10}, {20, 3},  {30, 6}};
     for (const auto& [descriptor, characters] : widths_in_characters)
       made->add_element(descriptor, {BufrElement::Kind::text, 0, 0, 8 * characters});
     made->add_element(31000, {BufrElement::Kind::number, 0, 0, 1});
@@ -74,7 +74,7 @@ class Entries {
     const auto scale = whole_number(part(17)), reference = whole_number(part(19)), width = whole_number(part(20));
     if (!number || *number >= 100'000 || !scale || !reference || !width || *width <= 0) return;
     const std::string_view unit = trimmed(part(15));
-    const BufrElement::Kind kind = unit.starts_with("CCITT")                        ? BufrElement::Kind::text
+    const BufrElement::Kind kind = unit.starts_with("CCITT")                      ? BufrElement::Kind::text
                                    : unit == "CODE TABLE" || unit == "FLAG TABLE" ? BufrElement::Kind::code_or_flags
                                                                                   : BufrElement::Kind::number;
     into_.add_element(*number, {kind, static_cast<int>(trimmed(part(16)) == "-" ? -*scale : *scale),

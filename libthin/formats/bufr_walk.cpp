@@ -27,7 +27,8 @@ Error unreadable(const std::string& problem) {
   return {ErrorKind::input, problem};
 }
 
-// 10^-scale by repeated division or multiplication: the same roundings as ecCodes', so that values agree to the last bit.
+// 10^-scale by repeated division or multiplication: the same roundings as ecCodes', so that values agree to the last
+// bit.
 double factor_of(int scale) {
   double factor = 1;
   for (; scale > 0; --scale) factor /= 10;
@@ -69,7 +70,8 @@ Result<void> BufrWalk::descriptors(std::span<const int> list, int depth) {
         break;
       default: {
         const std::vector<int>* members = input_.tables->sequence(descriptor);
-        if (!members) return unreadable(fmt::format("sequence {:06} is in no table that it names or brings", descriptor));
+        if (!members)
+          return unreadable(fmt::format("sequence {:06} is in no table that it names or brings", descriptor));
         done = descriptors(*members, depth + 1);
       }
     }
@@ -210,7 +212,9 @@ Result<void> BufrWalk::described_element(int descriptor, const BufrElement& elem
   if (element.kind == BufrElement::Kind::number) {
     constexpr int kHighestRaise = 9;
     constexpr std::int64_t kLargestReference = 100'000'000'000'000'000;
-    if (now_.raised_by > kHighestRaise || __builtin_mul_overflow(field.reference, power_of_ten(now_.raised_by), &field.reference) || std::abs(field.reference) > kLargestReference)
+    if (now_.raised_by > kHighestRaise ||
+        __builtin_mul_overflow(field.reference, power_of_ten(now_.raised_by), &field.reference) ||
+        std::abs(field.reference) > kLargestReference)
       return unreadable(fmt::format("its operators make the reference of element {:06} too large", descriptor));
     const int width = static_cast<int>(element.width) + now_.added_width + (10 * now_.raised_by + 2) / 3;
     if (width <= 0) return unreadable(fmt::format("its operators leave no bits to element {:06}", descriptor));
@@ -251,7 +255,8 @@ Result<void> BufrWalk::add(BufrField field) {
     field.increment_width = static_cast<unsigned>(bits_at(input_.data, place_, kIncrementWidthBits));
     if (field.text) field.increment_width *= 8;  // characters
     if (!field.text && field.increment_width > kWidestNumber)
-      return unreadable(fmt::format("increments of element {:06} have {} bits", field.descriptor, field.increment_width));
+      return unreadable(
+          fmt::format("increments of element {:06} have {} bits", field.descriptor, field.increment_width));
     place_ += kIncrementWidthBits;
     const std::size_t increments = std::size_t{field.increment_width} * input_.subset_count;
     if (!is_left(increments)) return short_of_bits;

@@ -36,19 +36,19 @@ class BufrWalk {
   // Steps that take no bits: replications of operators can multiply to any number of them.
   static constexpr std::size_t kFreeSteps = 1'000'000;
   static constexpr std::size_t kMostFields = 1'000'000;  // of a subset
-  static constexpr int kDeepest = 64;  // sequences and replications within one another
+  static constexpr int kDeepest = 64;                    // sequences and replications within one another
 
   // What operators have changed. Each subset begins with none.
   struct Operators {
-    int added_width = 0;                // 201
-    int added_scale = 0;                // 202
-    unsigned reference_bits = 0;        // 203: new references are read from the data
-    std::vector<unsigned> associated;   // 204: bits of each field in force
-    unsigned local_width = 0;           // 206, for the next descriptor
-    int raised_by = 0;                  // 207
-    unsigned characters = 0;            // 208
-    int without_data = 0;               // 221: descriptors left
-    bool in_quality_block = false;      // 222 to 225, 232
+    int added_width = 0;                               // 201
+    int added_scale = 0;                               // 202
+    unsigned reference_bits = 0;                       // 203: new references are read from the data
+    std::vector<unsigned> associated;                  // 204: bits of each field in force
+    unsigned local_width = 0;                          // 206, for the next descriptor
+    int raised_by = 0;                                 // 207
+    unsigned characters = 0;                           // 208
+    int without_data = 0;                              // 221: descriptors left
+    bool in_quality_block = false;                     // 222 to 225, 232
     std::unordered_map<int, std::int64_t> references;  // that 203 has changed
   };
 

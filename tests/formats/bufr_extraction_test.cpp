@@ -28,9 +28,9 @@ std::vector<SourceReference> references(std::uint32_t message, const std::vector
   return list;
 }
 
-ByteVector hirs_message() {
+ByteVector avhrr_message() {
   std::vector<TestSounding> soundings = test_soundings(3);
-  for (TestSounding& sounding : soundings) sounding.sensor = 0;
+  for (TestSounding& sounding : soundings) sounding.sensor = 5;
   return make_message(soundings);
 }
 
@@ -101,12 +101,12 @@ TEST(BufrExtraction, ABulletinOfSeveralMessagesStaysOne) {
 }
 
 TEST(BufrExtraction, OtherKindsStayOrLeave) {
-  const ByteVector amsua = make_message(test_soundings(4)), hirs = hirs_message();
-  const ByteVector file = joined({hirs, bytes_of("junk"), amsua, bulletin(hirs)});
+  const ByteVector amsua = make_message(test_soundings(4)), other = avhrr_message();
+  const ByteVector file = joined({other, bytes_of("junk"), amsua, bulletin(other)});
   const std::vector<SourceReference> all = references(1, {0, 1, 2, 3});
-  EXPECT_EQ(extracted(file, all), joined({hirs, amsua, bulletin(hirs)}));
+  EXPECT_EQ(extracted(file, all), joined({other, amsua, bulletin(other)}));
   EXPECT_EQ(extracted(file, all, {.other_messages = OutputOptions::OtherMessages::drop}), amsua);
-  EXPECT_EQ(extracted(file, {}), joined({hirs, bulletin(hirs)}));
+  EXPECT_EQ(extracted(file, {}), joined({other, bulletin(other)}));
 }
 
 // A message that says it is AMSU-A, in which ecCodes finds too few bits.
