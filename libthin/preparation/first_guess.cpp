@@ -101,7 +101,11 @@ void FirstGuessOptions::declare(OptionTable& table) {
 
 void subtract_first_guess(ObservationSet& set, const FirstGuessOptions& options, std::vector<std::string>& notes) {
   if (set.value_kind == ValueKind::brightness_temperature) {
-    if (options.first_guess == FirstGuess::scan_position_mean) {
+    if (!set.first_guess_k.empty() && options.first_guess != FirstGuess::none) {
+      for (std::size_t i = 0; i < set.values.size(); ++i) set.values[i] -= set.first_guess_k[i];
+      set.value_kind = ValueKind::innovation;
+      notes.emplace_back("the first guess is the files' own");
+    } else if (options.first_guess == FirstGuess::scan_position_mean) {
       subtract_scan_position_means(set, options.minimum_lines, notes);
       set.value_kind = ValueKind::innovation;
     } else {

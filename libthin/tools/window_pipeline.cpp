@@ -47,6 +47,7 @@ Result<FileOutcome> write_file(const WindowFile& file, const std::vector<SourceR
   outcome.name = file.name;
   outcome.retained = retained.size();
   outcome.skipped = file.contents.skipped;
+  outcome.notes = file.contents.notes;
   const ObservationSet& observations = file.contents.observations;
   outcome.observations =
       static_cast<std::size_t>(std::count_if(observations.time_ms.begin(), observations.time_ms.end(),
