@@ -7,7 +7,6 @@
 #include <string>
 
 #include "libthin/formats/bufr_scanner.h"
-#include "libthin/formats/bufr_sounders.h"
 #include "libthin/formats/observation_file.h"
 
 namespace thin {

@@ -6,11 +6,11 @@ namespace thin {
 namespace {
 
 constexpr BufrSounder kSounders[] = {
-    {Instrument::amsua, 3, {570}, 28, 15},
-    {Instrument::amsub, 4, {574}, 43, 5},
-    {Instrument::mhs, 11, {203}, 43, 5},
-    {Instrument::hirs, 0, {605, 606, 607}, 1, 19},
-    {Instrument::atms, kUnknownNumber, {621}, kUnknownNumber, kMostChannels},
+    {Instrument::amsua, 3, 28, 15},
+    {Instrument::amsub, 4, 43, 5},
+    {Instrument::mhs, 11, 43, 5},
+    {Instrument::hirs, 0, 1, 19},
+    {Instrument::atms, kUnknownNumber, kUnknownNumber, kMostChannels},
 };
 
 constexpr BufrVariable kVariables[] = {
@@ -34,13 +34,6 @@ std::span<const BufrSounder> bufr_sounders() {
 
 const BufrSounder* sounder_of_sensor(int sensor) {
   return find_sounder([&](const BufrSounder& sounder) { return sensor >= 0 && sounder.sensor == sensor; });
-}
-
-const BufrSounder* sounder_of_satellite_instrument(int number) {
-  return find_sounder([&](const BufrSounder& sounder) {
-    const auto& numbers = sounder.satellite_instruments;
-    return number > 0 && std::find(numbers.begin(), numbers.end(), number) != numbers.end();
-  });
 }
 
 const BufrSounder* sounder_of(Instrument instrument) {

@@ -12,8 +12,7 @@ namespace thin {
 
 struct BufrSounder {
   Instrument instrument = Instrument::unknown;
-  int sensor = kUnknownNumber;                 // code table 002048, of the ATOVS sequences 310008 to 310010
-  std::array<int, 3> satellite_instruments{};  // common code table C-8 (002019), of ATMS and NCEP's tanks; 0 for none
+  int sensor = kUnknownNumber;  // code table 002048, of the ATOVS sequences 310008 to 310010
   // Channel 1 in code table 002150, where TOVS' and ATOVS' channels are numbered on; elsewhere (005042) 1 is 1.
   int first_channel_code = kUnknownNumber;
   int channel_count = 0;  // with brightness temperatures. HIRS has one more, which is a radiance
@@ -23,13 +22,9 @@ std::span<const BufrSounder> bufr_sounders();
 
 // Null for instruments that are not read.
 const BufrSounder* sounder_of_sensor(int sensor);
-const BufrSounder* sounder_of_satellite_instrument(int number);
 const BufrSounder* sounder_of(Instrument instrument);
 
 constexpr int kMostChannels = 22;
-
-// Which of two temperatures, where a file has both (ATMS); elsewhere the one that it has.
-enum class BufrTemperature { brightness, antenna };
 
 // Elements, as FXXYYY. Where there are two, NCEP's tanks and files of different resolutions have one or the other.
 constexpr int kSatelliteElement = 1007;

@@ -12,6 +12,7 @@
 
 #include "libthin/formats/bufr_kinds.h"
 #include "libthin/formats/bufr_sounders.h"
+#include "libthin/formats/sounding_table.h"
 #include "libthin/observations/time.h"
 
 namespace thin {
@@ -146,7 +147,7 @@ void find_instruments(const BufrData& data, const AlikeSubsets& group, bool is_a
     if (!std::isnan(sensor[subset])) {
       into.push_back(instrument_of(sounder_of_sensor(static_cast<int>(sensor[subset]))));
     } else if (!std::isnan(satellite_instrument[subset])) {
-      into.push_back(instrument_of(sounder_of_satellite_instrument(static_cast<int>(satellite_instrument[subset]))));
+      into.push_back(instrument_of_number(satellite_instrument[subset]));
     } else if (is_atms) {
       into.push_back(Instrument::atms);
     } else {

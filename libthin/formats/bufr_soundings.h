@@ -11,8 +11,8 @@
 
 #include "libthin/formats/bufr_data.h"
 #include "libthin/formats/bufr_header.h"
-#include "libthin/formats/bufr_sounders.h"
 #include "libthin/formats/bufr_tank_tables.h"
+#include "libthin/formats/observation_file.h"
 #include "libthin/observations/observation_set.h"
 
 namespace thin {
