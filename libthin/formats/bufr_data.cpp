@@ -82,6 +82,10 @@ Result<BufrData> BufrData::walk(std::span<const std::uint8_t> message, const Buf
   result.data_ = message.subspan(header.section4_offset + kSection4Head, header.section4_length - kSection4Head);
   result.compressed_ = header.compressed;
   result.subset_count_ = static_cast<std::uint32_t>(header.subset_count);
+  // Constants are packed once for all subsets, but no two soundings have the same place: this bounds what a short file
+  // can grow to.
+  if (result.subset_count_ > 8 * result.data_.size())
+    return Error{ErrorKind::input, "it has more subsets than bits of data"};
   BufrWalk walk({result.data_, &tables, header.compressed, result.subset_count_});
   if (!header.compressed) {
     auto groups = walk_subsets(walk, header, 8 * result.data_.size());

@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "libthin/formats/bufr_soundings.h"
+#include "libthin/formats/bufr_observations.h"
 
 namespace thin {
 namespace {

@@ -40,6 +40,12 @@ const BufrSounder* sounder_of(Instrument instrument) {
   return find_sounder([&](const BufrSounder& sounder) { return sounder.instrument == instrument; });
 }
 
+int channel_of(const BufrSounder& sounder, int descriptor, double number) {
+  const double channel = descriptor == kChannelCodeElement ? number - (sounder.first_channel_code - 1) : number;
+  const bool is_numbered = descriptor != kChannelCodeElement || sounder.first_channel_code > 0;
+  return is_numbered && channel >= 1 && channel <= sounder.channel_count ? static_cast<int>(channel) : 0;
+}
+
 std::span<const BufrVariable> bufr_variables() {
   return kVariables;
 }

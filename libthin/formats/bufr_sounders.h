@@ -24,6 +24,10 @@ std::span<const BufrSounder> bufr_sounders();
 const BufrSounder* sounder_of_sensor(int sensor);
 const BufrSounder* sounder_of(Instrument instrument);
 
+// Channel from 1 by a number in kChannelCodeElement or kChannelNumberElement; 0 where it is another instrument's,
+// unused, missing, or has no brightness temperature.
+int channel_of(const BufrSounder& sounder, int descriptor, double number);
+
 constexpr int kMostChannels = 22;
 
 // Elements, as FXXYYY. Where there are two, NCEP's tanks and files of different resolutions have one or the other.

@@ -273,6 +273,13 @@ TEST(BufrSoundings, OperatorsThatAreNotReadAreNamed) {
   EXPECT_NE(with(1, 100).find("leave no bits to element 033007"), std::string::npos) << with(1, 100);
 }
 
+// A few bytes must not grow to millions of observations.
+TEST(BufrSoundings, MoreSubsetsThanBitsAreRefused) {
+  ByteVector message = make_message(test_soundings(1));
+  message[8 + 22 + 4] = 0xff;  // 65,281 subsets, all of them the same
+  EXPECT_NE(error_of(message).message.find("more subsets than bits"), std::string::npos) << error_of(message).message;
+}
+
 struct Sounder {
   Instrument instrument;
   int sensor, first_code, channels;
