@@ -71,7 +71,10 @@ class MessageReader {
     };
     const SoundingMessage soundings =
         open_soundings(bytes_.subspan(message.offset, message.length), message.header, tables_);
-    if (soundings.state == SoundingMessage::State::tables) return;
+    if (soundings.state == SoundingMessage::State::tables) {
+      ++table_messages_;
+      return;
+    }
     if (soundings.state != SoundingMessage::State::soundings) return skip(soundings.reason, soundings.remedy);
 
     const std::uint32_t left_out = append_soundings(soundings, number, temperature_, sets_);
@@ -82,6 +85,8 @@ class MessageReader {
 
   // All instruments together.
   void finish() {
+    if (table_messages_ > 0)
+      contents_.notes.push_back("decoded with the tables that it brings, in " + counted(table_messages_, "message"));
     for (auto& [instrument, set] : sets_) {
       if (set.size() == 0) continue;
       contents_.instrument += (contents_.instrument.empty() ? "" : ", ") + std::string(instrument_name(instrument));
@@ -98,6 +103,7 @@ class MessageReader {
   ReadObservations& contents_;
   Refusals& refusals_;
   BufrFileTables tables_;
+  std::size_t table_messages_ = 0;
   SoundingSets sets_;
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 
 // What sections 0, 1 and 3 of one BUFR message say (WMO Manual on Codes, FM 94; editions 2, 3 and 4), read without
-// ecCodes: enough to tell messages of different kinds apart, and to keep a message whose sections do not fit out of a
-// decoder that would trust them.
+// any tables: enough to tell messages of different kinds apart, and to keep those whose sections do not fit out of what
+// trusts them.
 
 #include <cstddef>
 #include <cstdint>

@@ -94,6 +94,7 @@ TEST_P(Tanks, ReadAsWritten) {
   ASSERT_TRUE(contents.ok()) << contents.error().message;
   EXPECT_EQ(contents->message_count, 3U);
   EXPECT_TRUE(contents->skipped.empty());
+  EXPECT_EQ(contents->notes, std::vector<std::string>{"decoded with the tables that it brings, in 1 message"});
   ASSERT_EQ(contents->observations.size(), 80U);
   ASSERT_EQ(contents->observations.channel_count(), static_cast<std::size_t>(GetParam().channels));
   expect_as_written(contents->observations, 0, GetParam());
