@@ -152,9 +152,6 @@ Result<void> BufrWalk::operator_descriptor(int descriptor) {
     case 8:
       now_.characters = static_cast<unsigned>(y);
       return {};
-    case 21:
-      now_.without_data = y;
-      return {};
     case 22:
     case 23:
     case 24:
@@ -177,11 +174,6 @@ Result<void> BufrWalk::element(int descriptor) {
   const unsigned local_width = std::exchange(now_.local_width, 0U);
   const BufrElement* known = input_.tables->element(descriptor);
   if (now_.reference_bits > 0) return new_reference(descriptor);
-  if (now_.without_data > 0) {
-    --now_.without_data;
-    const int x = x_of(descriptor);
-    if (x == 0 || (x > 9 && x != kDataPresentClass)) return {};
-  }
   if (local_width > 0) {
     BufrElement described = known ? *known : BufrElement{};
     described.width = local_width;
@@ -228,9 +220,9 @@ Result<void> BufrWalk::described_element(int descriptor, const BufrElement& elem
 // Between 203YYY and 203255 elements stand for new references of YYY bits, the first of them the sign.
 Result<void> BufrWalk::new_reference(int descriptor) {
   const unsigned width = now_.reference_bits;
+  if (input_.compressed) return unreadable("its compressed data change references (203), which is not read");
   if (const Result<void> done = add({.descriptor = descriptor, .can_be_missing = false, .width = width}); !done)
     return done;
-  if (fields_.back().increment_width > 0) return unreadable("its subsets have different references");
   depends_on_data_ = true;
   const std::uint64_t bits = bits_at(input_.data, begin_ + fields_.back().offset, width);
   const auto magnitude = static_cast<std::int64_t>(bits & all_ones(width - 1));

@@ -47,7 +47,6 @@ class BufrWalk {
     unsigned local_width = 0;                          // 206, for the next descriptor
     int raised_by = 0;                                 // 207
     unsigned characters = 0;                           // 208
-    int without_data = 0;                              // 221: descriptors left
     bool in_quality_block = false;                     // 222 to 225, 232
     std::unordered_map<int, std::int64_t> references;  // that 203 has changed
   };
