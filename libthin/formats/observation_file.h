@@ -95,7 +95,8 @@ struct ExtractionSummary {
 
 // Writes the retained observations of `original_path` to `output_path` (created or replaced; not yet synced to disk).
 // retained: references into the original, any order, no duplicates; `file` is not looked at. Messages are written in
-// their order in the original, subsets in theirs. Where nothing would be written, no file is created and messages is 0.
+// their order in the original, subsets in theirs. Where nothing would be written, no file is created and messages is 0;
+// with flags there always is.
 // The same input gives the same bytes.
 Result<ExtractionSummary> extract_observations(const std::string& original_path,
                                                std::span<const SourceReference> retained,
