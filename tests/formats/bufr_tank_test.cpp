@@ -185,6 +185,17 @@ TEST(BufrTank, WithoutItsTablesItIsRefusedWithTheRemedy) {
   ASSERT_FALSE(lacking.ok());
 }
 
+TEST(BufrTank, ItsOwnTablesSufficeWhereEcCodesLacksWmos) {
+  for (const bool counted : {false, true}) {
+    const TankShape shape = {.counted_channels = counted};
+    ByteVector data = tank_data_message(tank_soundings(40, shape), shape);
+    data[8 + 10] = 200;  // version of WMO's tables
+    const ObservationSet set = read(test::joined({tank_table_message(tank_tables(shape)), data}));
+    ASSERT_EQ(set.size(), 40U);
+    expect_as_written(set, 0, shape);
+  }
+}
+
 TEST(BufrTank, TablesAloneAreNotWritten) {
   const ScratchFolder folder;
   const auto summary = extract_observations(folder.write("tank", tank(kMhs)), {}, folder.path("out"), {});
