@@ -19,6 +19,7 @@ std::size_t increments_of(const BufrField& field) {
 // Base, width and increments as they came, without those of other subsets.
 void copy_increments(Bytes data, const BufrField& field, std::span<const std::uint32_t> subsets, BitWriter& out) {
   out.copy(data, field.offset, field.width + kIncrementWidthBits);
+  if (field.increment_width == 0) return;
   for (const std::uint32_t subset : subsets)
     out.copy(data, increments_of(field) + std::size_t{subset} * field.increment_width, field.increment_width);
 }
