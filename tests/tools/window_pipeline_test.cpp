@@ -77,8 +77,9 @@ TEST(WindowPipeline, RetainsTheShareAndCountsEverything) {
   EXPECT_EQ(outcome->retained.size(), 180U);
   ASSERT_EQ(outcome->files.size(), 1U);
   EXPECT_EQ(outcome->files[0].output.subsets, 180U);
-  EXPECT_GT(outcome->error.whole.mean_squared_k2, 0);
-  EXPECT_LT(outcome->error.whole.mean_squared_k2, outcome->error.whole.empty_mean_squared_k2);
+  const EstimationError& error = outcome->errors.at(Instrument::amsua).whole;
+  EXPECT_GT(error.mean_squared_k2, 0);
+  EXPECT_LT(error.mean_squared_k2, error.empty_mean_squared_k2);
   const auto read_back = read_observations(scratch.path("out/a"));
   ASSERT_TRUE(read_back);
   EXPECT_EQ(read_back->observations.size(), 180U);

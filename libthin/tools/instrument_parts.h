@@ -1,0 +1,20 @@
+#pragma once
+
+// Instruments of one window are thinned apart: each by its own channels, with the same method and options.
+
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "libthin/foundation/result.h"
+#include "libthin/observations/observation_set.h"
+
+namespace thin {
+
+// Calls body(instrument, its observations with its channels alone, their indices in `observations`) for each instrument,
+// in their order; ends at the first error. A set of one instrument is passed on as it is.
+using InstrumentBody =
+    std::function<Result<void>(Instrument, const ObservationSet&, std::span<const std::uint32_t>)>;
+Result<void> each_instrument(const ObservationSet& observations, const InstrumentBody& body);
+
+}  // namespace thin
