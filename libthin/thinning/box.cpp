@@ -63,7 +63,8 @@ void Box::declare_options(OptionTable& table) {
             {.unit = "km", .minimum = 0.1, .maximum = 20000, .explanation = "side of a box"});
 }
 
-Result<Retained> Box::thin(const ObservationSet& observations) const {
+Result<Choice> Box::choose(const ThinningInput& input) const {
+  const ObservationSet& observations = input.observations;
   struct Nearest {
     std::uint32_t observation;
     double distance_km;
@@ -74,12 +75,14 @@ Result<Retained> Box::thin(const ObservationSet& observations) const {
     const BoxMesh::Box box = mesh.box_of(observations.latitude_deg[i], observations.longitude_deg[i]);
     const double distance_km = chord_km(observations.position_km[i], mesh.centre_km(box));
     const auto [place, is_first] = nearest.try_emplace(mesh.key(box), Nearest{i, distance_km});
-    if (!is_first && distance_km < place->second.distance_km) place->second = {i, distance_km};
+    if (is_first || input.has_priority(place->second.observation, i)) continue;
+    if (input.has_priority(i, place->second.observation) || distance_km < place->second.distance_km)
+      place->second = {i, distance_km};
   }
   Retained retained;
   for (const auto& entry : nearest) retained.push_back(entry.second.observation);
   std::sort(retained.begin(), retained.end());
-  return retained;
+  return Choice{retained};
 }
 
 }  // namespace thin

@@ -9,7 +9,8 @@ namespace thin {
 class Box : public ThinningMethod {
  public:
   void declare_options(OptionTable& table) override;
-  Result<Retained> thin(const ObservationSet& observations) const override;
+  Traits traits() const override { return {.stops_at_count = false, .uses_values = false, .uses_places = false}; }
+  Result<Choice> choose(const ThinningInput& input) const override;
 
  private:
   double horizontal_mesh_km_ = 75;

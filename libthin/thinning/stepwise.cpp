@@ -25,7 +25,8 @@ std::optional<ThinningMethod::Conflict> Stepwise::conflict() const {
   return std::nullopt;
 }
 
-Result<Retained> Stepwise::thin(const ObservationSet& observations) const {
+Result<Choice> Stepwise::choose(const ThinningInput& input) const {
+  const ObservationSet& observations = input.observations;
   Retained retained;
   for (std::uint32_t i = 0; i < observations.size(); ++i) {
     const int line = observations.scan_line[i];
@@ -37,7 +38,7 @@ Result<Retained> Stepwise::thin(const ObservationSet& observations) const {
                                i, line < 0 ? "scan line number" : "field of view number")};
     if (line % step_ == line_offset_ && field_of_view % step_ == field_of_view_offset_) retained.push_back(i);
   }
-  return retained;
+  return Choice{retained};
 }
 
 }  // namespace thin

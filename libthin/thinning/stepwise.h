@@ -9,9 +9,12 @@ namespace thin {
 // into files. O(n). Errors: input, where the scan position of an observation is unknown.
 class Stepwise : public ThinningMethod {
  public:
+  Traits traits() const override {
+    return {.stops_at_count = false, .uses_values = false, .uses_places = false, .takes_priority = false};
+  }
   void declare_options(OptionTable& table) override;
   std::optional<Conflict> conflict() const override;
-  Result<Retained> thin(const ObservationSet& observations) const override;
+  Result<Choice> choose(const ThinningInput& input) const override;
 
  private:
   int step_ = 3;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Instruments of one window are thinned apart: each by its own channels, with the same method and options.
+// The instruments of one window one by one: each with its own observations and channels.
 
 #include <cstdint>
 #include <functional>

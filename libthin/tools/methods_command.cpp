@@ -6,7 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "libthin/thinning/thinning_method.h"
+#include "libthin/thinning/thinner.h"
 #include "libthin/tools/commands.h"
 
 namespace thin {
@@ -24,23 +24,23 @@ std::string limits_of(const OptionFacts& facts) {
 }
 
 void print_method(const MethodEntry& entry) {
-  const auto method = entry.make();
+  Thinner thinner(entry);
   OptionTable table;
-  method->declare_options(table);
+  thinner.declare_options(table);
   fmt::print("{}\n  {}\n  Source: {}\n", entry.name, entry.summary, entry.source);
   for (const Option& option : table.options()) {
     const std::string limits = limits_of(option.facts);
-    fmt::print("    {:<22} {:<8} default {:<8}{}{}\n", option.name, option.type, option.default_value,
+    fmt::print("    {:<24} {:<8} default {:<8}{}{}\n", option.name, option.type, option.default_value,
                option.facts.unit.empty() ? "" : "  unit: " + option.facts.unit,
                limits.empty() ? "" : "  (" + limits + ")");
-    fmt::print("    {:<22} {}\n", "", option.facts.explanation);
+    fmt::print("    {:<24} {}\n", "", option.facts.explanation);
   }
 }
 
 Json method_json(const MethodEntry& entry) {
-  const auto method = entry.make();
+  Thinner thinner(entry);
   OptionTable table;
-  method->declare_options(table);
+  thinner.declare_options(table);
   Json json = {{"name", entry.name}, {"summary", entry.summary}, {"source", entry.source}, {"options", Json::array()}};
   for (const Option& option : table.options())
     json["options"].push_back({{"name", option.name},

@@ -16,7 +16,7 @@ constexpr const char* kDaemonSections[] = {"daemon", "window"};
 void choose_method(Configuration& configuration, Settings& settings) {
   settings.method_name = configuration.peek_text("thinning", "method").value_or(settings.method_name);
   if (const MethodEntry* entry = find_thinning_method(settings.method_name)) {
-    settings.method = entry->make();
+    settings.thinner = std::make_unique<Thinner>(*entry);
     return;
   }
   std::vector<std::string> known;
@@ -50,10 +50,10 @@ Result<Settings> read_settings(Configuration configuration) {
   OptionTable thinning, preparation, output, run;
   choose_method(configuration, settings);
   thinning.add("method", settings.method_name, {});
-  if (settings.method) {
-    settings.method->declare_options(thinning);
+  if (settings.thinner) {
+    settings.thinner->declare_options(thinning);
     configuration.read_section("thinning", thinning);
-    if (const auto conflict = settings.method->conflict())
+    if (const auto conflict = settings.thinner->conflict())
       configuration.add_problem("thinning", conflict->key, conflict->problem);
   } else {
     configuration.ignore_section("thinning");

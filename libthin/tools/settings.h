@@ -8,13 +8,13 @@
 #include "libthin/formats/observation_file.h"
 #include "libthin/foundation/configuration.h"
 #include "libthin/preparation/preparation.h"
-#include "libthin/thinning/thinning_method.h"
+#include "libthin/thinning/thinner.h"
 
 namespace thin {
 
 struct Settings {
   std::string method_name = "grid_eea";
-  std::unique_ptr<ThinningMethod> method;
+  std::unique_ptr<Thinner> thinner;
   PreparationOptions preparation;
   OutputOptions output;
   int threads = 0;

@@ -12,7 +12,9 @@ constexpr int kReportLevel = 6;
 }  // namespace
 
 Result<ThinnedError> thinned_error(const ObservationSet& set, const Retained& retained, double bandwidth_km) {
-  const auto table = neighbourhood_table(gme_grid(kReportLevel), set.position_km, {bandwidth_km});
+  const Places places = places_of(set);
+  const auto table =
+      neighbourhood_table(evaluation_places(gme_grid(kReportLevel), places, bandwidth_km), places, {bandwidth_km});
   if (!table) return table.error();
   std::vector<std::uint8_t> is_retained(set.size(), 0);
   for (const std::uint32_t i : retained) is_retained[i] = 1;
@@ -23,8 +25,7 @@ Result<ThinnedError> thinned_error(const ObservationSet& set, const Retained& re
     std::vector<std::uint8_t> reached(table->evaluation_point_count(), 0);
     for (std::size_t i = 0; i < set.size(); ++i)
       if (set.platform[i] == platform)
-        for (std::uint64_t entry = table->column_begin[i]; entry < table->column_begin[i + 1]; ++entry)
-          reached[table->evaluation_point[entry]] = 1;
+        for (const std::uint32_t q : table->points_near(i)) reached[q] = 1;
     error.platforms[platform] = estimation_error(*table, set.values, set.channel_count(), is_retained, reached);
   }
   return error;

@@ -55,21 +55,6 @@ Result<Prepared> prepare_files(const std::vector<WindowFile>& files, const Obser
   return prepare(all, window, options, *data);
 }
 
-Result<void> thin_each_instrument(const ThinningMethod& method, WindowOutcome& outcome) {
-  const ObservationSet& all = outcome.prepared.observations;
-  const auto thin_part = [&](Instrument, const ObservationSet& part,
-                             std::span<const std::uint32_t> members) -> Result<void> {
-    Result<Retained> retained = method.thin(part);
-    if (!retained) return retained.error();
-    for (const std::uint32_t i : *retained) outcome.retained.push_back(members[i]);
-    return {};
-  };
-  if (Result<void> thinned = each_instrument(all, thin_part); !thinned) return thinned;
-  std::sort(outcome.retained.begin(), outcome.retained.end());
-  for (const std::uint32_t i : outcome.retained) ++outcome.retained_by_sounder[sounder_of(all, i)];
-  return {};
-}
-
 Result<void> evaluate_each_instrument(double bandwidth_km, WindowOutcome& outcome) {
   return each_instrument(
       outcome.prepared.observations,
@@ -153,10 +138,15 @@ Result<WindowOutcome> thin_window(std::vector<WindowFile> files, std::vector<Ref
     return nothing_left(outcome.prepared, all, settings.preparation.screening);
   clock.finish("prepare");
 
-  if (Result<void> thinned = thin_each_instrument(*settings.method, outcome); !thinned) return thinned.error();
+  Result<Choice> choice = settings.thinner->thin(outcome.prepared.observations);
+  if (!choice) return choice.error();
+  outcome.retained = std::move(choice->retained);
+  for (std::string& note : choice->notes) outcome.prepared.notes.push_back(std::move(note));
+  for (const std::uint32_t i : outcome.retained)
+    ++outcome.retained_by_sounder[sounder_of(outcome.prepared.observations, i)];
   clock.finish("thin");
 
-  const double bandwidth_km = settings.method->bandwidth_km().value_or(kReportBandwidthKm);
+  const double bandwidth_km = choice->bandwidth_km.value_or(kReportBandwidthKm);
   if (Result<void> evaluated = evaluate_each_instrument(bandwidth_km, outcome); !evaluated) return evaluated.error();
   clock.finish("evaluate");
 

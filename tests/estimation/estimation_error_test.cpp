@@ -13,7 +13,7 @@ TEST(EstimationError, AgreesWithItsDefinition) {
   for (const std::size_t channels : {1U, 3U, 8U}) {
     const ObservationSet set = test::random_observations(120, channels, 4);
     const test::EstimationOracle oracle{set.position_km, set.position_km, set.values, channels, 150};
-    const auto table = neighbourhood_table(set.position_km, set.position_km, {150});
+    const auto table = neighbourhood_table(places_of(set), places_of(set), {150});
     std::mt19937 random(9);
     for (const unsigned share : {0U, 5U, 50U, 100U}) {
       std::vector<std::uint8_t> retained(set.size());
@@ -36,8 +36,8 @@ TEST(EstimationError, AgreesWithItsDefinition) {
 TEST(EstimationError, CountsOnlyTheRowsAskedFor) {
   const ObservationSet set = test::random_observations(60, 2, 5);
   const std::vector<Vector3> half(set.position_km.begin(), set.position_km.begin() + 30);
-  const auto all_rows = neighbourhood_table(set.position_km, set.position_km, {150});
-  const auto half_rows = neighbourhood_table(half, set.position_km, {150});
+  const auto all_rows = neighbourhood_table(places_of(set), places_of(set), {150});
+  const auto half_rows = neighbourhood_table(places_at(half), places_of(set), {150});
   std::vector<std::uint8_t> retained(60, 0), counted(60, 0);
   for (std::size_t i = 0; i < 60; i += 4) retained[i] = 1;
   for (std::size_t i = 0; i < 30; ++i) counted[i] = 1;
@@ -47,7 +47,7 @@ TEST(EstimationError, CountsOnlyTheRowsAskedFor) {
 }
 
 TEST(EstimationError, OfNothingIsZero) {
-  const auto table = neighbourhood_table(gme_grid(1), {}, {100});
+  const auto table = neighbourhood_table(places_at(gme_grid(1)), places_at({}), {100});
   EXPECT_EQ(estimation_error(*table, {}, 2, {}).mean_squared_k2, 0);
 }
 

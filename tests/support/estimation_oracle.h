@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -48,15 +47,14 @@ struct EstimationOracle {
     return sum;
   }
 
-  // The increments of all retained, NaN for the others.
+  // What giving up each of the retained, and retaining each of the others, would add to error_sum.
   std::vector<double> increments(const std::vector<bool>& retained) const {
     const double now = error_sum(retained);
-    std::vector<double> result(positions.size(), std::numeric_limits<double>::quiet_NaN());
+    std::vector<double> result(positions.size());
     for (std::size_t p = 0; p < positions.size(); ++p) {
-      if (!retained[p]) continue;
-      std::vector<bool> without = retained;
-      without[p] = false;
-      result[p] = error_sum(without) - now;
+      std::vector<bool> changed = retained;
+      changed[p] = !changed[p];
+      result[p] = error_sum(changed) - now;
     }
     return result;
   }

@@ -1,9 +1,8 @@
-#include "libthin/thinning/box.h"
-
 #include <gtest/gtest.h>
 
 #include "libthin/observations/geodesy.h"
 #include "tests/support/random_observations.h"
+#include "tests/support/thinning.h"
 
 namespace thin {
 namespace {
@@ -11,17 +10,12 @@ namespace {
 TEST(Box, BoxesHaveNearlyEqualArea) {
   // 200,000 even points: a mesh of 500 km must keep about one for each 250,000 km² of the Earth's 510 million.
   const ObservationSet set = test::spiral_observations(200000, 1, 1);
-  Box box;
-  OptionTable table;
-  box.declare_options(table);
-  ASSERT_FALSE(table.find("horizontal_mesh")->assign(500.0));
-  const Result<Retained> retained = box.thin(set);
-  ASSERT_TRUE(retained);
-  EXPECT_NEAR(static_cast<double>(retained->size()), 510.07e6 / 250000, 20);
+  const Retained retained = test::retained(test::thinner("box", {{"horizontal_mesh", 500.0}}), set);
+  EXPECT_NEAR(static_cast<double>(retained.size()), 510.07e6 / 250000, 20);
 }
 
 TEST(Box, SpreadsOverTheDateLineLikeAnywhereElse) {
-  Box box;
+  const Thinner box = test::thinner("box", {});
   const ObservationSet west = test::random_observations(3000, 1, 2, {-10, 10, 178, 182});
   ObservationSet turned = test::random_observations(0, 1, 2);
   for (std::size_t i = 0; i < west.size(); ++i)  // the same places, spelt from -180
@@ -29,7 +23,7 @@ TEST(Box, SpreadsOverTheDateLineLikeAnywhereElse) {
                       .longitude_deg = normalised_longitude_deg(west.longitude_deg[i]),
                       .source = {}},
                      west.values_of(i));
-  EXPECT_EQ(*box.thin(west), *box.thin(turned));
+  EXPECT_EQ(test::retained(box, west), test::retained(box, turned));
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "libthin/foundation/configuration.h"
-#include "libthin/thinning/thinning_method.h"
+#include "libthin/thinning/thinner.h"
 
 namespace thin {
 namespace {
@@ -58,22 +58,22 @@ TEST(Cases, RetainWhatTheySay) {
     ASSERT_TRUE(method_name);
     const MethodEntry* entry = find_thinning_method(*method_name);
     ASSERT_TRUE(entry) << *method_name;
-    const auto method = entry->make();
+    Thinner thinner(*entry);
     OptionTable thinning_table, case_table;
     std::string name;
     thinning_table.add("method", name, {});
-    method->declare_options(thinning_table);
+    thinner.declare_options(thinning_table);
     Case expected;
     expected.declare(case_table);
     configuration->read_section("thinning", thinning_table);
     configuration->read_section("case", case_table);
     const Result<void> read = configuration->finish();
     ASSERT_TRUE(read) << read.error().message;
-    ASSERT_FALSE(method->conflict());
+    ASSERT_FALSE(thinner.conflict());
 
-    const Result<Retained> retained = method->thin(expected.observations());
-    ASSERT_TRUE(retained) << retained.error().message;
-    EXPECT_EQ(std::vector<int>(retained->begin(), retained->end()), expected.retained) << expected.why;
+    const Result<Choice> choice = thinner.thin(expected.observations());
+    ASSERT_TRUE(choice) << choice.error().message;
+    EXPECT_EQ(std::vector<int>(choice->retained.begin(), choice->retained.end()), expected.retained) << expected.why;
   }
   EXPECT_GE(count, thinning_methods().size());
 }

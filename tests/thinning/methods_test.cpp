@@ -8,24 +8,13 @@
 #include "libthin/foundation/parallel.h"
 #include "libthin/thinning/thinning_method.h"
 #include "tests/support/random_observations.h"
+#include "tests/support/thinning.h"
 
 namespace thin {
 namespace {
 
-std::unique_ptr<ThinningMethod> make_method(const std::string& name, double fraction) {
-  auto method = find_thinning_method(name)->make();
-  OptionTable table;
-  method->declare_options(table);
-  if (const Option* option = table.find("retain_fraction")) {
-    EXPECT_FALSE(option->assign(fraction));
-  }
-  return method;
-}
-
 Retained thinned(const std::string& name, const ObservationSet& set, double fraction = 0.2) {
-  const Result<Retained> retained = make_method(name, fraction)->thin(set);
-  EXPECT_TRUE(retained) << retained.error().message;
-  return retained ? *retained : Retained{};
+  return test::retained(test::thinner(name, {{"retain_fraction", fraction}}), set);
 }
 
 class MethodTest : public testing::TestWithParam<std::string> {};
@@ -80,21 +69,6 @@ INSTANTIATE_TEST_SUITE_P(Registry, MethodTest, testing::ValuesIn([] {
                          }()),
                          [](const auto& each) { return each.param; });
 
-TEST(GridEea, RefusesNotANumberByObservationAndChannel) {
-  ObservationSet set = test::random_observations(10, 2, 11);
-  set.values[7] = std::numeric_limits<double>::quiet_NaN();
-  const Result<Retained> retained = make_method("grid_eea", 0.5)->thin(set);
-  ASSERT_FALSE(retained);
-  EXPECT_EQ(retained.error().kind, ErrorKind::input);
-  EXPECT_NE(retained.error().message.find("observation 3 has no usable value in channel 2"), std::string::npos)
-      << retained.error().message;
-}
-
-TEST(GridEea, RetainsAllWhenAskedTo) {
-  const ObservationSet set = test::random_observations(300, 2, 12);
-  EXPECT_EQ(thinned("grid_eea", set, 1.0).size(), 300U);
-}
-
 TEST(GridEea, IsDenseWhereTheSignalVaries) {
   // A step of 2 K along a meridian in the middle of a flat field: more than its share stays near the step.
   ObservationSet set = test::random_observations(4000, 1, 13, {-10, 10, 0, 40});
@@ -113,7 +87,7 @@ TEST(GridEea, IsDenseWhereTheSignalVaries) {
 TEST(Stepwise, NeedsScanPositions) {
   ObservationSet set = test::random_observations(10, 1, 14);
   set.scan_line[4] = kUnknownNumber;
-  const Result<Retained> retained = make_method("stepwise", 0)->thin(set);
+  const Result<Choice> retained = test::thinner("stepwise", {}).thin(set);
   ASSERT_FALSE(retained);
   EXPECT_NE(retained.error().message.find("observation 4 has no scan line number"), std::string::npos);
 }

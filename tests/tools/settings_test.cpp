@@ -20,7 +20,7 @@ TEST(Settings, TwoLinesAreEnough) {
   const Result<Settings> settings = settings_of("[thinning]\nmethod = \"grid_eea\"\nretain_fraction = 0.1\n");
   ASSERT_TRUE(settings) << settings.error().message;
   EXPECT_EQ(settings->method_name, "grid_eea");
-  EXPECT_EQ(settings->method->bandwidth_km(), 100);
+  EXPECT_EQ(settings->thinner->method_name(), "grid_eea");
   EXPECT_TRUE(settings_of("[thinning]\nmethod = \"stepwise\"\n"));
 }
 
