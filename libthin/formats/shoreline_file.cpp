@@ -108,7 +108,8 @@ class Reader {
   std::string problem_;
 };
 
-// ---- GSHHG, cut into bins of some degrees, counted from the north-west; points relative to their bin's south-west corner
+// ---- GSHHG, cut into bins of some degrees, counted from the north-west; points relative to their bin's south-west
+// corner
 
 struct Bins {
   std::size_t columns = 0, rows = 0;
@@ -223,7 +224,8 @@ void turn_north_up(Mask& mask) {
   const auto width = static_cast<std::ptrdiff_t>(mask.longitudes.size());
   std::vector<double> turned;
   turned.reserve(mask.land.size());
-  for (auto row = mask.land.end(); row != mask.land.begin(); row -= width) turned.insert(turned.end(), row - width, row);
+  for (auto row = mask.land.end(); row != mask.land.begin(); row -= width)
+    turned.insert(turned.end(), row - width, row);
   mask.land = std::move(turned);
 }
 
@@ -267,8 +269,7 @@ std::vector<ShoreEdge> edges_of(const Mask& mask) {
       const double west = west_of(column), east = west_of(column + 1);
       // Beyond the pole, where the map ends.
       if (row == 0 && land) edges.push_back({91, west, 91, east, false});
-      if (row > 0 && land != mask.is_land(row - 1, column))
-        edges.push_back({north_of(row), west, north_of(row), east});
+      if (row > 0 && land != mask.is_land(row - 1, column)) edges.push_back({north_of(row), west, north_of(row), east});
       if (land != mask.is_land(row, (column + columns - 1) % columns))
         edges.push_back({north_of(row), west, north_of(row + 1), west});
     }

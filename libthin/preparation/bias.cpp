@@ -37,9 +37,8 @@ class Corrections {
       if (predictor.variable.empty())
         bias += predictor.coefficient;
       else
-        bias += correction.columns[p]
-                    ? predictor.coefficient * std::pow((*correction.columns[p])[i], predictor.power)
-                    : NAN;
+        bias += correction.columns[p] ? predictor.coefficient * std::pow((*correction.columns[p])[i], predictor.power)
+                                      : NAN;
     }
     return bias;
   }
@@ -96,7 +95,9 @@ BiasCounts correct_bias(ObservationSet& set, const BiasTable* table, const BiasP
     }
     uncorrected[i] = !whole;
     ++(whole ? counts.corrected : counts.uncorrected);
-    if (whole) std::copy(corrected.begin(), corrected.end(), set.values.begin() + static_cast<std::ptrdiff_t>(i * values.size()));
+    if (whole)
+      std::copy(corrected.begin(), corrected.end(),
+                set.values.begin() + static_cast<std::ptrdiff_t>(i * values.size()));
   }
   return counts;
 }

@@ -53,11 +53,12 @@ void CompanionOptions::declare(OptionTable& table) {
   table.add("companion_files", files,
             {.explanation = "files that hold first guesses for the same fields of view, for first_guess = "
                             "\"companion\": paths or patterns (*, ?)"});
-  table.add("companion_distance_km", distance_km,
-            {.unit = "km",
-             .maximum = 1000,
-             .above = 0,
-             .explanation = "a companion has the same satellite, instrument and field of view within this distance ..."});
+  table.add(
+      "companion_distance_km", distance_km,
+      {.unit = "km",
+       .maximum = 1000,
+       .above = 0,
+       .explanation = "a companion has the same satellite, instrument and field of view within this distance ..."});
   table.add("companion_minutes", minutes,
             {.unit = "min", .maximum = 1440, .above = 0, .explanation = "... and this time"});
 }
@@ -69,8 +70,7 @@ void take_companions(ObservationSet& set, const ObservationSet& companions, cons
   for (const std::uint32_t j : canonical_order(companions)) sounders[sounder_of(companions, j)].push_back(j);
   const Nearness nearness{options.distance_km, std::llround(options.minutes * 60'000)};
   std::map<Sounder, SpaceTimeIndex> indexes;
-  for (auto& [sounder, members] : sounders)
-    indexes.try_emplace(sounder, companions, std::move(members), nearness);
+  for (auto& [sounder, members] : sounders) indexes.try_emplace(sounder, companions, std::move(members), nearness);
 
   const std::vector<std::size_t> places = matching_places(set, companions);
   parallel_ranges(set.size(), 1024, [&](std::size_t begin, std::size_t end) {

@@ -94,9 +94,7 @@ class Preference {
   Preference(const ObservationSet& set, std::span<const std::string> file_names, const DuplicateOptions& options)
       : set_(set), options_(options) {
     for (const std::string& name : file_names) {
-      const auto matches = [&](const std::string& pattern) {
-        return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
-      };
+      const auto matches = [&](const std::string& pattern) { return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0; };
       file_rank_.push_back(std::find_if(options.file_order.begin(), options.file_order.end(), matches) -
                            options.file_order.begin());
     }
@@ -136,11 +134,12 @@ void DuplicateOptions::declare(OptionTable& table) {
   table.add("remove_duplicates", remove,
             {.explanation = "of fields of view that are there twice (direct readout beside global data, messages sent "
                             "again) keep one"});
-  table.add("duplicate_distance_km", distance_km,
-            {.unit = "km",
-             .maximum = 1000,
-             .above = 0,
-             .explanation = "two observations of one satellite, instrument and field of view within this distance ..."});
+  table.add(
+      "duplicate_distance_km", distance_km,
+      {.unit = "km",
+       .maximum = 1000,
+       .above = 0,
+       .explanation = "two observations of one satellite, instrument and field of view within this distance ..."});
   table.add("duplicate_minutes", minutes,
             {.unit = "min", .maximum = 1440, .above = 0, .explanation = "... and this time of each other are one"});
   table.add_phrases("duplicate_preference", preference_names_,

@@ -17,7 +17,8 @@
 
 namespace thin {
 
-// What makes one duplicate better than another. The first rule in which two differ decides, at last the canonical order.
+// What makes one duplicate better than another. The first rule in which two differ decides, at last the canonical
+// order.
 enum class DuplicatePreference {
   file_order,      // whose file name matches an earlier pattern of file_order; files that match none come last
   fewest_missing,  // with fewer missing channels

@@ -97,11 +97,11 @@ void subtract_large_means(ObservationSet& set, std::vector<std::string>& notes) 
     // The scan-position means leave nothing but rounding behind; that is no bias.
     if (std::abs(mean) < 1e-9) continue;
     for (std::size_t i = 0; i < set.size(); ++i) set.values[i * channels + c] -= mean;
-    notes.push_back(
-        fmt::format("{}channel {}: the mean {:.3f} K is more than half the standard deviation {:.3f} K and was taken "
-                    "off before thinning",
-                    set.channel_instrument.empty() ? "" : fmt::format("{} ", instrument_name(set.channel_instrument[c])),
-                    set.channels[c], mean, deviation));
+    notes.push_back(fmt::format(
+        "{}channel {}: the mean {:.3f} K is more than half the standard deviation {:.3f} K and was taken "
+        "off before thinning",
+        set.channel_instrument.empty() ? "" : fmt::format("{} ", instrument_name(set.channel_instrument[c])),
+        set.channels[c], mean, deviation));
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-
 namespace thin {
 namespace {
 
@@ -89,8 +88,7 @@ void correct_and_subtract(Run& run, const PreparationOptions& options, const Pre
   std::vector<GuessSource> sources = first_guess_sources(run.set, choice);
 
   std::vector<bool> has_own(run.set.size()), uncorrected;
-  for (std::size_t i = 0; i < sources.size(); ++i)
-    has_own[i] = sources[i] == GuessSource::given && !from_companions;
+  for (std::size_t i = 0; i < sources.size(); ++i) has_own[i] = sources[i] == GuessSource::given && !from_companions;
   run.prepared.bias =
       correct_bias(run.set, pointer(data.bias_table), pointer(data.bias_predictors), has_own, uncorrected);
 
@@ -124,8 +122,9 @@ std::optional<PreparationOptions::Conflict> PreparationOptions::conflict() const
   if (first_guess.first_guess != FirstGuess::companion && !companions.files.empty())
     return Conflict{"companion_files", "is used by first_guess = \"companion\" alone: set that, or leave this out"};
   if (screening.minimum_latitude_deg > screening.maximum_latitude_deg)
-    return Conflict{"minimum_latitude_deg", fmt::format("must not lie north of maximum_latitude_deg = {:g}, as {:g} does",
-                                                        screening.maximum_latitude_deg, screening.minimum_latitude_deg)};
+    return Conflict{"minimum_latitude_deg",
+                    fmt::format("must not lie north of maximum_latitude_deg = {:g}, as {:g} does",
+                                screening.maximum_latitude_deg, screening.minimum_latitude_deg)};
   if (screening.minimum_k && screening.maximum_k && *screening.minimum_k > *screening.maximum_k)
     return Conflict{"minimum_k", fmt::format("must be at most maximum_k = {:g}, not {:g}", *screening.maximum_k,
                                              *screening.minimum_k)};

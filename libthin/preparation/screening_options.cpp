@@ -28,8 +28,8 @@ Problem understand_platforms(const Phrases& phrases, std::set<std::int32_t>& pla
     const std::optional<int> number = whole_number(name);
     const std::optional<std::int32_t> known = number ? number : platform_number(name);
     if (!known)
-      return fmt::format(
-          "has the unknown satellite \"{}\": write a name like \"Metop-B\" or its WMO number like \"3\"", name);
+      return fmt::format("has the unknown satellite \"{}\": write a name like \"Metop-B\" or its WMO number like \"3\"",
+                         name);
     numbers.insert(*known);
   }
   platforms = std::move(numbers);
@@ -153,9 +153,10 @@ Problem understand_flags(const Phrases& phrases, std::vector<FlagRule>& rules) {
     const std::vector<std::string> words = words_of(phrase);
     const std::optional<std::uint64_t> mask = words.size() == 2 ? mask_of(words[1]) : std::nullopt;
     if (words.empty() || words.size() > 2 || (words.size() == 2 && !mask))
-      return fmt::format("has \"{}\"; write the name of a variable that must be 0, or with a mask of the bits that "
-                         "must be 0: \"scan_line_quality_flags 0x3\"",
-                         phrase);
+      return fmt::format(
+          "has \"{}\"; write the name of a variable that must be 0, or with a mask of the bits that "
+          "must be 0: \"scan_line_quality_flags 0x3\"",
+          phrase);
     found.push_back({words.front(), mask});
   }
   rules = std::move(found);
@@ -168,8 +169,8 @@ Problem understand_variables(const Phrases& phrases, std::vector<VariableRule>& 
     const std::vector<std::string> words = words_of(phrase);
     const auto interval = interval_of(words);
     if (!interval)
-      return fmt::format(
-          "has \"{}\"; write the name of a variable and its limits: \"satellite_zenith_angle_deg 0 55\"", phrase);
+      return fmt::format("has \"{}\"; write the name of a variable and its limits: \"satellite_zenith_angle_deg 0 55\"",
+                         phrase);
     found.push_back({words.front(), interval->first, interval->second});
   }
   rules = std::move(found);
@@ -239,9 +240,10 @@ void ScreeningOptions::declare(OptionTable& table) {
   table.add_phrases("surface", written_.surfaces,
                     {.explanation = "surfaces to use: sea, land, coast, ice, unknown; empty: all"},
                     [this](const Phrases& phrases) { return understand_surfaces(phrases, surfaces); });
-  table.add_phrases("skip_edge_positions", written_.skip_edge,
-                    {.explanation = "scan positions to leave out at each end of the line: 3, or [\"amsua 3\", \"mhs 9\"]"},
-                    [this](const Phrases& phrases) { return understand_edges(phrases, skip_edge, skip_edge_of); });
+  table.add_phrases(
+      "skip_edge_positions", written_.skip_edge,
+      {.explanation = "scan positions to leave out at each end of the line: 3, or [\"amsua 3\", \"mhs 9\"]"},
+      [this](const Phrases& phrases) { return understand_edges(phrases, skip_edge, skip_edge_of); });
   table.add("minimum_latitude_deg", minimum_latitude_deg,
             {.unit = "degrees north", .minimum = -90, .maximum = 90, .explanation = "latitude band to use: from ..."});
   table.add("maximum_latitude_deg", maximum_latitude_deg,

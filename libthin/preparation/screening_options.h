@@ -35,9 +35,9 @@ struct VariableRule {
 };
 
 struct ScreeningOptions {
-  std::set<std::int32_t> platforms;                   // empty: all
-  std::set<Instrument> instruments;                   // empty: all
-  std::vector<int> channels;                          // of the only instrument; empty: all that are alive
+  std::set<std::int32_t> platforms;                    // empty: all
+  std::set<Instrument> instruments;                    // empty: all
+  std::vector<int> channels;                           // of the only instrument; empty: all that are alive
   std::map<Instrument, std::vector<int>> channels_of;  // of an instrument by name, before `channels`
   double dead_channel_fraction = 0.5;  // missing in more than this share of a satellite's observations: dead there
   std::set<Surface> surfaces;          // empty: all

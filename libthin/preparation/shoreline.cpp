@@ -54,8 +54,8 @@ Shoreline::Shoreline(std::span<const ShoreEdge> edges) : middles_({}, 3) {
   middles_ = KdTree(coordinates, 3);
 }
 
-// From west to east; in two where the edge crosses the meridian of 0. Ends are turned each by itself, so that edges which
-// meet go on meeting. An edge along a meridian is never crossed by a line to the pole.
+// From west to east; in two where the edge crosses the meridian of 0. Ends are turned each by itself, so that edges
+// which meet go on meeting. An edge along a meridian is never crossed by a line to the pole.
 void Shoreline::add_spans(const ShoreEdge& edge, std::vector<Span>& spans) const {
   double west = turned(edge.from_longitude_deg), east = turned(edge.to_longitude_deg);
   double west_latitude = edge.from_latitude_deg, east_latitude = edge.to_latitude_deg;

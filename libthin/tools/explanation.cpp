@@ -25,7 +25,8 @@ std::string options_of(Options options) {
   OptionTable table;
   options.declare(table);
   std::string text;
-  for (const Option& option : table.options()) text += line(fmt::format("{} = {}", option.name, option.current_value()));
+  for (const Option& option : table.options())
+    text += line(fmt::format("{} = {}", option.name, option.current_value()));
   return text;
 }
 
@@ -90,8 +91,8 @@ std::string screening_step(const WindowOutcome& outcome, const Settings& setting
   std::string text;
   for (const auto& [reason, counts] : reasons)
     for (const auto& [sounder, count] : counts)
-      text += line(
-          fmt::format("{}: {} {}", sounder_name(sounder), count, name_of(reason, settings.preparation.screening)));
+      text +=
+          line(fmt::format("{}: {} {}", sounder_name(sounder), count, name_of(reason, settings.preparation.screening)));
   if (outcome.prepared.surfaces_filled > 0)
     text += line(fmt::format("{} surfaces by the land/sea mask", outcome.prepared.surfaces_filled));
   return step(4, "screening", fmt::format("{} left out (those of steps 5 and 6 among them)", screened)) + text +
@@ -143,10 +144,9 @@ std::string output_step(const WindowOutcome& outcome, const Settings& settings) 
   std::size_t count = 0;
   for (const FileOutcome& file : outcome.files) {
     count += file.output.messages > 0;
-    files += line(file.output.messages > 0
-                      ? fmt::format("{}: {} of {} observations, {} bytes", file.name, file.retained, file.read,
-                                    file.output.bytes)
-                      : file.name + ": nothing of it is retained, no file");
+    files += line(file.output.messages > 0 ? fmt::format("{}: {} of {} observations, {} bytes", file.name,
+                                                         file.retained, file.read, file.output.bytes)
+                                           : file.name + ": nothing of it is retained, no file");
   }
   return step(8, "output", fmt::format("{} files and {}", count, kReportName)) + files +
          options_of_section(settings, "output");

@@ -11,10 +11,9 @@
 
 namespace thin {
 
-// Calls body(instrument, its observations with its channels alone, their indices in `observations`) for each instrument,
-// in their order; ends at the first error. A set of one instrument is passed on as it is.
-using InstrumentBody =
-    std::function<Result<void>(Instrument, const ObservationSet&, std::span<const std::uint32_t>)>;
+// Calls body(instrument, its observations with its channels alone, their indices in `observations`) for each
+// instrument, in their order; ends at the first error. A set of one instrument is passed on as it is.
+using InstrumentBody = std::function<Result<void>(Instrument, const ObservationSet&, std::span<const std::uint32_t>)>;
 Result<void> each_instrument(const ObservationSet& observations, const InstrumentBody& body);
 
 }  // namespace thin

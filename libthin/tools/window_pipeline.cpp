@@ -38,10 +38,11 @@ Error nothing_left(const Prepared& prepared, const ObservationSet& all, const Sc
   std::string why;
   for (const auto& [reason, count] : reasons)
     why += fmt::format("{}{} {}", why.empty() ? " (" : ", ", count, name_of(reason, options));
-  return {ErrorKind::input,
-          fmt::format("nothing is left to thin: of {} observations {} lie outside the window, {} are duplicates, and {} "
-                      "were screened out{}; see [preparation] for the channels, limits and rules",
-                      all.size(), prepared.outside_window, duplicates, screened, why.empty() ? "" : why + ")")};
+  return {
+      ErrorKind::input,
+      fmt::format("nothing is left to thin: of {} observations {} lie outside the window, {} are duplicates, and {} "
+                  "were screened out{}; see [preparation] for the channels, limits and rules",
+                  all.size(), prepared.outside_window, duplicates, screened, why.empty() ? "" : why + ")")};
 }
 
 Result<Prepared> prepare_files(const std::vector<WindowFile>& files, const ObservationSet& all,

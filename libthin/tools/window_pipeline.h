@@ -1,7 +1,8 @@
 #pragma once
 
 // The way of one window from decoded files to thinned files, the same for `thin run` and for the daemon's worker:
-// merge, preparation (window, duplicates, screening, bias, first guess), thinning, report, extraction from the original files.
+// merge, preparation (window, duplicates, screening, bias, first guess), thinning, report, extraction from the original
+// files.
 
 #include <map>
 #include <string>

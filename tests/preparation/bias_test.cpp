@@ -89,7 +89,8 @@ TEST(Bias, FilesNameLineValueAndRemedy) {
   EXPECT_EQ(problem_of("4,amsua,0,1,0"), "b.csv:2: channel \"0\" must be a number from 1 on");
   EXPECT_EQ(problem_of("4,amsua,1,x,0"), "b.csv:2: scan_position \"x\" must be a number from 1 on, or *");
   EXPECT_EQ(problem_of("\n4,amsua,1,1,0.1K"), "b.csv:3: bias_k \"0.1K\" must be a number");
-  EXPECT_EQ(problem_of("4,amsua,1,1"), "b.csv:2: 4 fields instead of 5 (satellite,instrument,channel,scan_position,bias_k)");
+  EXPECT_EQ(problem_of("4,amsua,1,1"),
+            "b.csv:2: 4 fields instead of 5 (satellite,instrument,channel,scan_position,bias_k)");
   EXPECT_EQ(problem_of("4,amsua,1,1,0\n4,amsua,1,1,0"),
             "b.csv:3: scan_position 1 of this channel stands here for the second time");
   EXPECT_NE(BiasTable::parse("4,amsua,1,1,0\n", "b.csv").error().message.find("must name the columns"),

@@ -98,7 +98,8 @@ TEST(Duplicates, TheLimitsBelongToThem) {
   set.channels = {1};
   const double value[] = {250};
   const auto add = [&](double latitude, std::int64_t time_ms) {
-    set.push_back({.latitude_deg = latitude, .time_ms = time_ms, .platform = 4, .field_of_view = 7, .source = {}}, value);
+    set.push_back({.latitude_deg = latitude, .time_ms = time_ms, .platform = 4, .field_of_view = 7, .source = {}},
+                  value);
   };
   add(0, 0);
   add(0, 360'000);

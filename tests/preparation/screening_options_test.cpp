@@ -60,7 +60,8 @@ TEST_F(ScreeningOptionsTest, SayWhatIsWrongAndLeaveTheRest) {
             "has the unknown instrument \"amsux\"; known are amsua, amsub, mhs, hirs, atms");
   EXPECT_EQ(problem("channels", Phrases{"amsua"}), "names no channel behind \"amsua\"");
   EXPECT_NE(problem("channels", Phrases{"amsua 7-5"}).find("has \"7-5\", which is no channel"), std::string::npos);
-  EXPECT_NE(problem("channels", std::vector<std::int64_t>{0}).find("has \"0\", which is no channel"), std::string::npos);
+  EXPECT_NE(problem("channels", std::vector<std::int64_t>{0}).find("has \"0\", which is no channel"),
+            std::string::npos);
   EXPECT_EQ(problem("channels", 1.5), "must be a list of texts or integers, not a number");
   EXPECT_NE(problem("platforms", Phrases{"NOAA 19"}).find("has the unknown satellite \"NOAA 19\""), std::string::npos);
   EXPECT_NE(problem("surface", Phrases{"see"}).find("known are sea, land, coast, ice, unknown"), std::string::npos);

@@ -110,7 +110,7 @@ ObservationSet of_two_instruments() {
 TEST(Screening, JudgesTheChannelsOfEachInstrumentByItself) {
   ObservationSet set = of_two_instruments();
   for (std::size_t i = 1; i < 100; i += 2) set.values[i * 6 + 1] = kMissing;  // AMSU-A 2 on NOAA-16
-  set.values[150 * 6 + 4] = 69;                                              // MHS 2
+  set.values[150 * 6 + 4] = 69;                                               // MHS 2
   const auto screening = screen(set, {});
   ASSERT_TRUE(screening) << screening.error().message;
   EXPECT_EQ(screening->channel_places, (std::vector<std::size_t>{0, 2, 3, 4, 5}));
@@ -165,11 +165,11 @@ TEST(Screening, SelectsBySatelliteLatitudeEdgeAndSurface) {
   for (std::size_t i = 0; i < set.size(); ++i) {
     const int view = set.field_of_view[i];
     const bool edge = i < 100 ? view == 1 || view == 30 : view <= 5 || view > 85;
-    const ScreeningReason expected = set.platform[i] != 206                   ? ScreeningReason::platform
-                                     : std::abs(set.latitude_deg[i]) > 5      ? ScreeningReason::latitude
-                                     : edge                                   ? ScreeningReason::scan_position
-                                     : set.surface[i] == Surface::unknown     ? ScreeningReason::unknown_surface
-                                                                              : ScreeningReason::none;
+    const ScreeningReason expected = set.platform[i] != 206               ? ScreeningReason::platform
+                                     : std::abs(set.latitude_deg[i]) > 5  ? ScreeningReason::latitude
+                                     : edge                               ? ScreeningReason::scan_position
+                                     : set.surface[i] == Surface::unknown ? ScreeningReason::unknown_surface
+                                                                          : ScreeningReason::none;
     EXPECT_EQ(screening->reasons[i], expected) << i;
   }
 }
@@ -192,7 +192,7 @@ TEST(Screening, HoldsVariablesToTheirRules) {
     return static_cast<ScreeningReason>(static_cast<int>(ScreeningReason::first_rule) + number);
   };
   for (std::size_t i = 0; i < set.size(); ++i)
-    EXPECT_EQ(screening->reasons[i], i % 4 == 2                ? rule(0)
+    EXPECT_EQ(screening->reasons[i], i % 4 == 2              ? rule(0)
                                      : i > 50 || i % 10 == 9 ? rule(2)
                                                              : ScreeningReason::none)
         << i;

@@ -84,7 +84,8 @@ TEST(Shoreline, KnowsHowNearTheShoreIs) {
 TEST(Shoreline, ClosesAroundTheSouthPole) {
   std::vector<ShoreEdge> edges;
   for (int lon = 0; lon < 360; lon += 10)
-    edges.push_back({-70.0 - lon % 20, static_cast<double>(lon), -70.0 - (lon + 10) % 20, static_cast<double>(lon + 10)});
+    edges.push_back(
+        {-70.0 - lon % 20, static_cast<double>(lon), -70.0 - (lon + 10) % 20, static_cast<double>(lon + 10)});
   const Shoreline shoreline(edges);
   for (const double lon : {-180.0, 0.0, 5.0, 179.9, 360.0}) {
     EXPECT_TRUE(shoreline.is_land(-90, lon));

@@ -61,7 +61,8 @@ inline std::optional<std::size_t> companion_by_brute_force(const ObservationSet&
 }
 
 // Whether a point lies within a set of edges, by the winding of all of them in the plane of longitude and latitude: a
-// ray to the west instead of the north, with the plane repeated to both sides. Edges of closed polygons, no pole inside.
+// ray to the west instead of the north, with the plane repeated to both sides. Edges of closed polygons, no pole
+// inside.
 inline bool is_inside_by_brute_force(const std::vector<ShoreEdge>& edges, double latitude, double longitude) {
   bool inside = false;
   for (const ShoreEdge& edge : edges)

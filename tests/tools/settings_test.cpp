@@ -45,10 +45,12 @@ TEST(Settings, AMethodsOptionsAreItsOwn) {
 
 TEST(Settings, NameWhatIsWrongInThePreparation) {
   const std::string box = "[thinning]\nmethod = \"box\"\n[preparation]\n";
-  EXPECT_EQ(problem_of(box + "duplicate_distnace_km = 3\n"),
-            "c.toml:4:1: unknown key \"duplicate_distnace_km\" in [preparation]; did you mean \"duplicate_distance_km\"?");
-  EXPECT_EQ(problem_of(box + "surface = [\"water\"]\n"),
-            "c.toml:4:11: preparation.surface has the unknown surface \"water\"; known are sea, land, coast, ice, unknown");
+  EXPECT_EQ(
+      problem_of(box + "duplicate_distnace_km = 3\n"),
+      "c.toml:4:1: unknown key \"duplicate_distnace_km\" in [preparation]; did you mean \"duplicate_distance_km\"?");
+  EXPECT_EQ(
+      problem_of(box + "surface = [\"water\"]\n"),
+      "c.toml:4:11: preparation.surface has the unknown surface \"water\"; known are sea, land, coast, ice, unknown");
   EXPECT_EQ(problem_of(box + "channels = [\"amsu 5\"]\n"),
             "c.toml:4:12: preparation.channels has the unknown instrument \"amsu\"; known are amsua, amsub, mhs, hirs, "
             "atms");

@@ -131,7 +131,8 @@ TEST(WindowPipeline, DuplicatesGoBeforeThinning) {
   const auto again = test::write_synthetic_file(scratch.path("b"), "NOAA-16", kSyntheticBeginMs, 40);
   const auto beside = test::write_synthetic_file(scratch.path("rars"), "NOAA-16", kSyntheticBeginMs + 400, 20);
   const Settings settings = settings_of(
-      "[thinning]\nmethod = \"grid_eea\"\nretain_fraction = 1\n[preparation]\nduplicate_file_order = [\"b\", \"r*\"]\n");
+      "[thinning]\nmethod = \"grid_eea\"\nretain_fraction = 1\n[preparation]\nduplicate_file_order = [\"b\", "
+      "\"r*\"]\n");
   const auto outcome = thin_window(read_all({once, again, beside}), {}, {}, settings, folder(scratch, "out"));
   ASSERT_TRUE(outcome) << outcome.error().message;
   const SounderTally& tally = outcome->prepared.sounders.at({207, Instrument::amsua});
@@ -169,8 +170,8 @@ TEST(WindowPipeline, SaysWhyNothingIsLeft) {
   const ScratchFolder scratch;
   const auto path = test::write_synthetic_file(scratch.path("a"), "NOAA-16", kSyntheticBeginMs, 2);
   const auto outcome =
-      thin_window(read_all({path}), {}, {}, settings_of(std::string(kTenth) + "[preparation]\nplatforms = [\"Aqua\"]\n"),
-                  folder(scratch, "out"));
+      thin_window(read_all({path}), {}, {},
+                  settings_of(std::string(kTenth) + "[preparation]\nplatforms = [\"Aqua\"]\n"), folder(scratch, "out"));
   ASSERT_FALSE(outcome);
   EXPECT_NE(outcome.error().message.find("60 were screened out (60 satellite not among platforms)"), std::string::npos)
       << outcome.error().message;
