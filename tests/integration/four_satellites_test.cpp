@@ -79,16 +79,16 @@ TEST_F(FourSatellitesTest, DuplicatesLeaveNoTraceButTheirCount) {
     clean.deliver(name, content);
     crowded.deliver(name, content);
   }
-  // Readout a second beside the global data, then exactly at its scan lines, then a file that is there already.
+  // Readout a second beside the global data, then exactly at its scan lines, then all messages of a file twice.
   const Files beside = synthesise({"NOAA-15"}, "2006-11-21T23:08:01Z", 10);
   const Files at_it = synthesise({"Metop-A"}, "2006-11-21T23:16:00Z", 10);
   for (const auto& [name, content] : beside) crowded.deliver("rars_a_" + name, content);
   for (const auto& [name, content] : at_it) crowded.deliver("rars_b_" + name, content);
-  crowded.deliver("again.bufr", global_data().begin()->second);
+  const std::string& metop = global_data().at("amsua_metopa_20061121T230000Z.bufr");
+  crowded.deliver("rars_c.bufr", metop + metop);
   ASSERT_EQ(clean.run_once(), 0) << clean.log();
   ASSERT_EQ(crowded.run_once(), 0) << crowded.log();
   EXPECT_TRUE(crowded.consistent());
-  EXPECT_EQ(crowded.status()["files"]["duplicates"], 1) << "the file that was there is known by its content";
 
   const nlohmann::json report = only_report(crowded), clean_report = only_report(clean);
   ASSERT_EQ(report["satellites"].size(), 4U) << crowded.log();
@@ -107,13 +107,13 @@ TEST_F(FourSatellitesTest, DuplicatesLeaveNoTraceButTheirCount) {
   }
   EXPECT_EQ(total, accounted);
   EXPECT_EQ(duplicates["NOAA-15"], 75 * 30) << "ten minutes of it";
-  EXPECT_EQ(duplicates["Metop-A"], 75 * 30);
+  EXPECT_EQ(duplicates["Metop-A"], 75 * 30 + 2 * 150 * 30);
   EXPECT_EQ(duplicates["NOAA-16"], 0);
-  EXPECT_EQ(report["observations"]["duplicates"], 2 * 75 * 30);
+  EXPECT_EQ(report["observations"]["duplicates"], 2 * 75 * 30 + 2 * 150 * 30);
 
   // The global data is kept, so all that comes out is what came out without them.
   EXPECT_EQ(report["observations"]["prepared"], clean_report["observations"]["prepared"]);
-  EXPECT_EQ(outputs(crowded), outputs(clean));
+  EXPECT_TRUE(outputs(crowded) == outputs(clean));
   EXPECT_EQ(clean_report["observations"]["duplicates"], 0);
 }
 

@@ -75,6 +75,20 @@ inline bool is_inside_by_brute_force(const std::vector<ShoreEdge>& edges, double
   return inside;
 }
 
+// For the whole world's land, no edge of which crosses the meridian of 0: by the crossings of a line from the south
+// pole, where land is, to the point.
+inline bool is_land_seen_from_the_south(const std::vector<ShoreEdge>& edges, double latitude, double longitude) {
+  bool land = true;
+  for (const ShoreEdge& edge : edges) {
+    const double west = std::min(edge.from_longitude_deg, edge.to_longitude_deg);
+    const double east = std::max(edge.from_longitude_deg, edge.to_longitude_deg);
+    if (longitude < west || longitude >= east) continue;
+    const double share = (longitude - edge.from_longitude_deg) / (edge.to_longitude_deg - edge.from_longitude_deg);
+    if (edge.from_latitude_deg + share * (edge.to_latitude_deg - edge.from_latitude_deg) < latitude) land = !land;
+  }
+  return land;
+}
+
 // Least distance from a position to all edges, each cut into short straight pieces. km
 inline double shore_distance_by_brute_force(const std::vector<ShoreEdge>& edges, const Vector3& position_km,
                                             int pieces_per_edge) {
