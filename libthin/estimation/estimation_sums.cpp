@@ -1,82 +1,247 @@
 #include "libthin/estimation/estimation_sums.h"
 
 #include <algorithm>
-#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
 
 #include "libthin/estimation/lanes.h"
+#include "libthin/foundation/parallel.h"
 
 namespace thin {
 namespace {
 
 constexpr std::uint32_t kFreshAfter = 256;
 
-inline __attribute__((always_inline)) double squared_norm(const double* x, std::size_t width) {
+// Beyond this, a in the multiplied-out change costs more digits than can be spared.
+constexpr double kLargestFactor = 32;
+
+constexpr std::size_t kRowsAhead = 4;
+constexpr std::size_t kCacheLineBytes = 64;
+
+constexpr std::uint32_t kNobody = 0xffffffff;
+
+inline __attribute__((always_inline)) double dot(const double* x, const double* y, std::size_t width) {
   Lanes sum{};
-  for (std::size_t c = 0; c < width; c += kLaneCount) sum += load(x + c) * load(x + c);
+  for (std::size_t c = 0; c < width; c += kLaneCount) sum += load(x + c) * load(y + c);
   return across(sum);
 }
 
-// The change that moving the mean by a (m - f) makes to |m - reference|²:  2a d.(m - f) + a² |m - f|².
-// a > 0: f is given up; a < 0: it is retained.
-inline __attribute__((always_inline)) double change(const double* mean, const double* deviation, const double* value,
-                                                    std::size_t width, double a) {
-  Lanes along{}, squared{};
-  for (std::size_t c = 0; c < width; c += kLaneCount) {
-    const Lanes difference = load(mean + c) - load(value + c);
-    along += load(deviation + c) * difference;
-    squared += difference * difference;
+THIN_VECTOR_CLONES double dot_product(const double* x, const double* y, std::size_t width) {
+  return dot(x, y, width);
+}
+
+inline __attribute__((always_inline)) void add_multiple(double* sums, const double* value, double weight,
+                                                        std::size_t width) {
+  for (std::size_t c = 0; c < width; c += kLaneCount) store(load(sums + c) + load(value + c) * weight, sums + c);
+}
+
+// What of a point follows from its sums.
+inline __attribute__((always_inline)) void complete(PointSums& point, const double* sums, const double* reference,
+                                                    std::size_t width) {
+  point.one_over_weight_sum = point.retained_count > 0 ? 1 / point.weight_sum : 0;
+  point.mean_squared = dot(sums, sums, width) * point.one_over_weight_sum * point.one_over_weight_sum;
+  point.mean_by_deviation = point.mean_squared - dot(sums, reference, width) * point.one_over_weight_sum;
+}
+
+THIN_VECTOR_CLONES void complete_point(PointSums& point, const double* sums, const double* reference,
+                                       std::size_t width) {
+  complete(point, sums, reference, width);
+}
+
+// Sums of the retained among some pairs; returns Z.
+THIN_VECTOR_CLONES double sum_pairs(const std::uint32_t* observation, const double* weight, std::uint32_t count,
+                                    const std::uint8_t* retained, const double* values, std::size_t width,
+                                    double* sums) {
+  double weight_sum = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!retained[observation[i]]) continue;
+    weight_sum += weight[i];
+    add_multiple(sums, values + observation[i] * width, weight[i], width);
   }
-  return a * (2 * across(along) + a * across(squared));
+  return weight_sum;
+}
+
+// The points and weights of a column, for the loops over it.
+struct Reach {
+  const std::uint32_t* points;
+  const double* weights;
+  std::size_t size;
+};
+using AtPlace = std::function<void(std::size_t)>;
+
+// Brings the points that an observation reaches up to date with its change of state. afresh(i): sums the i-th anew.
+THIN_VECTOR_CLONES void update_reached(const Reach& reach, PointSums* points, double* value_sums,
+                                       const double* references, const double* value, std::size_t width, bool retained,
+                                       std::uint32_t step, const AtPlace& afresh) {
+  for (std::size_t i = 0; i < reach.size; ++i) {
+    const std::uint32_t q = reach.points[i];
+    PointSums& point = points[q];
+    const double weight = retained ? reach.weights[i] : -reach.weights[i];
+    point.retained_count += retained ? 1 : -1;
+    point.changed_at = step;
+    point.weight_sum += weight;
+    point.largest_weight_sum = std::max(point.largest_weight_sum, point.weight_sum);
+    if (++point.updates == kFreshAfter || point.weight_sum < 0.5 * point.largest_weight_sum)
+      afresh(i);
+    else
+      add_multiple(value_sums + q * width, value, weight, width);
+    complete(point, value_sums + q * width, references + q * width, width);
+  }
+}
+
+// What an observation changing its state would change at each point that it reaches. careful(i): the i-th, where the
+// multiplied-out form won't do.
+THIN_VECTOR_CLONES void changes_of_reached(const Reach& reach, const PointSums* points, const double* value_sums,
+                                           const double* references, const double* value, double square,
+                                           std::size_t width, bool retained, double* changes, const AtPlace& careful) {
+  for (std::size_t i = 0; i < reach.size; ++i) {
+    const std::uint32_t q = reach.points[i];
+    const PointSums& point = points[q];
+    const double weight = reach.weights[i];
+    const double a = retained ? weight / (point.weight_sum - weight) : -weight / (point.weight_sum + weight);
+    if (retained && (point.retained_count < 2 || !(a <= kLargestFactor))) {
+      careful(i);
+      continue;
+    }
+    const double mean_by_value = dot(value_sums + q * width, value, width) * point.one_over_weight_sum;
+    const double along = point.mean_by_deviation - mean_by_value + dot(references + q * width, value, width);
+    const double distance = point.mean_squared - 2 * mean_by_value + square;
+    changes[i] = a * (2 * along + a * distance);
+  }
+}
+
+// across() of four at once, to the same bits.
+inline __attribute__((always_inline)) Lanes across_each(const Lanes& a, const Lanes& b, const Lanes& c,
+                                                        const Lanes& d) {
+  using Places = std::int64_t __attribute__((vector_size(sizeof(Lanes))));
+  const Lanes ab = __builtin_shuffle(a, b, Places{0, 4, 2, 6}) + __builtin_shuffle(a, b, Places{1, 5, 3, 7});
+  const Lanes cd = __builtin_shuffle(c, d, Places{0, 4, 2, 6}) + __builtin_shuffle(c, d, Places{1, 5, 3, 7});
+  return __builtin_shuffle(ab, cd, Places{0, 1, 4, 5}) + __builtin_shuffle(ab, cd, Places{2, 3, 6, 7});
 }
 
 struct Row {
-  const double* mean;
+  const double* value_sum;
   const double* deviation;
   double weight_sum;
+  double one_over_weight_sum;
+  double mean_squared;
+  double mean_by_deviation;
   std::uint32_t size;
   const std::uint32_t* observation;
   const double* weight;
-  double* change;
+  double* change;  // cached
 };
 
-// The inner loop of full updating: the change that each pair would cause made right, and the increments moved by the
-// differences. Width is known to the compiler, or 0.
+struct Observations {
+  const double* values;
+  const double* squares;
+  double* increments;
+  std::size_t width;
+};
+
+// The change that each of four pairs would cause, multiplied out; `factor` becomes their a.
 template <std::size_t Width, bool Retained>
-inline __attribute__((always_inline)) void refresh_pairs(const Row& row, const double* values, double* increments,
-                                                         std::size_t any_width) {
-  const std::size_t width = Width ? Width : any_width;
-  for (std::uint32_t i = 0; i < row.size; ++i) {
-    const std::uint32_t p = row.observation[i];
-    const double weight = row.weight[i];
-    const double a = Retained ? weight / (row.weight_sum - weight) : -weight / (row.weight_sum + weight);
-    const double now = change(row.mean, row.deviation, values + p * width, width, a);
-    increments[p] += now - row.change[i];
-    row.change[i] = now;
+inline __attribute__((always_inline)) Lanes changes(const Row& row, const std::uint32_t* observation,
+                                                    const double* weights, const Observations& all, Lanes& factor) {
+  const std::size_t width = Width ? Width : all.width;
+  Lanes products[kLaneCount] = {}, deviating[kLaneCount] = {};
+  Lanes square;
+  for (std::size_t lane = 0; lane < kLaneCount; ++lane) {
+    const double* value = all.values + observation[lane] * width;
+    for (std::size_t c = 0; c < width; c += kLaneCount) {
+      products[lane] += load(row.value_sum + c) * load(value + c);
+      deviating[lane] += load(row.deviation + c) * load(value + c);
+    }
+    square[lane] = all.squares[observation[lane]];
   }
+  const Lanes mean_by_value = across_each(products[0], products[1], products[2], products[3]) * row.one_over_weight_sum;
+  const Lanes weight = load(weights);
+  factor = Retained ? weight / (row.weight_sum - weight) : -weight / (row.weight_sum + weight);
+  const Lanes along = row.mean_by_deviation - across_each(deviating[0], deviating[1], deviating[2], deviating[3]);
+  const Lanes distance = row.mean_squared - 2 * mean_by_value + square;
+  return factor * (2 * along + factor * distance);
 }
 
-template <bool Retained>
-inline __attribute__((always_inline)) void refresh_pairs(const Row& row, const double* values, double* increments,
-                                                         std::size_t width) {
-  switch (width) {
+inline __attribute__((always_inline)) bool any_beyond(const Lanes& factor) {
+  return !(factor[0] <= kLargestFactor && factor[1] <= kLargestFactor && factor[2] <= kLargestFactor &&
+           factor[3] <= kLargestFactor);
+}
+
+// The inner loop of full updating: makes the changes of the row's pairs right, and moves the increments by what they
+// differ from the cached ones. Whose change fell is written to `fallen`, with room for all; returns how many these are.
+// careful(i): the change of the i-th pair, where the multiplied-out form won't do.
+template <std::size_t Width, bool Retained, class Careful>
+inline __attribute__((always_inline)) std::size_t refresh(const Row& row, const Observations& all,
+                                                          const Careful& careful, std::uint32_t* fallen) {
+  std::size_t fallen_count = 0;
+  // The pairs from i on: `count` of them count, the arrays hold four.
+  const auto take = [&](std::uint32_t i, std::uint32_t count, const std::uint32_t* observation, const double* weight,
+                        double* cached) __attribute__((always_inline)) {
+    Lanes factor;
+    Lanes now = changes<Width, Retained>(row, observation, weight, all, factor);
+    if (Retained && any_beyond(factor))
+      for (std::uint32_t lane = 0; lane < count; ++lane)
+        if (!(factor[lane] <= kLargestFactor)) now[lane] = careful(i + lane);
+    const Lanes difference = now - load(cached);
+    store(now, cached);
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      all.increments[observation[lane]] += difference[lane];
+      fallen[fallen_count] = observation[lane];
+      fallen_count += difference[lane] < 0;
+    }
+  };
+  std::uint32_t i = 0;
+  for (; i + kLaneCount <= row.size; i += kLaneCount)
+    take(i, kLaneCount, row.observation + i, row.weight + i, row.change + i);
+  if (i == row.size) return fallen_count;
+  std::uint32_t observation[kLaneCount];
+  double weight[kLaneCount], cached[kLaneCount];
+  for (std::uint32_t lane = 0; lane < kLaneCount; ++lane) {
+    const std::uint32_t pair = std::min(i + lane, row.size - 1);
+    observation[lane] = row.observation[pair];
+    weight[lane] = row.weight[pair];
+    cached[lane] = row.change[pair];
+  }
+  take(i, row.size - i, observation, weight, cached);
+  for (std::uint32_t lane = 0; i + lane < row.size; ++lane) row.change[i + lane] = cached[lane];
+  return fallen_count;
+}
+
+template <bool Retained, class Careful>
+inline __attribute__((always_inline)) std::size_t refresh(const Row& row, const Observations& all,
+                                                          const Careful& careful, std::uint32_t* fallen) {
+  switch (all.width) {
     case 4:
-      return refresh_pairs<4, Retained>(row, values, increments, width);
+      return refresh<4, Retained>(row, all, careful, fallen);
     case 8:
-      return refresh_pairs<8, Retained>(row, values, increments, width);
+      return refresh<8, Retained>(row, all, careful, fallen);
     case 12:
-      return refresh_pairs<12, Retained>(row, values, increments, width);
+      return refresh<12, Retained>(row, all, careful, fallen);
     case 16:
-      return refresh_pairs<16, Retained>(row, values, increments, width);
+      return refresh<16, Retained>(row, all, careful, fallen);
     default:
-      return refresh_pairs<0, Retained>(row, values, increments, width);
+      return refresh<0, Retained>(row, all, careful, fallen);
   }
 }
 
-THIN_VECTOR_CLONES void refresh_retained(const Row& row, const double* values, double* increments, std::size_t width) {
-  refresh_pairs<true>(row, values, increments, width);
+using CarefulChange = std::function<double(std::uint32_t)>;
+
+THIN_VECTOR_CLONES std::size_t refresh_retained(const Row& row, const Observations& all, const CarefulChange& careful,
+                                                std::uint32_t* fallen) {
+  return refresh<true>(row, all, careful, fallen);
 }
-THIN_VECTOR_CLONES void refresh_given_up(const Row& row, const double* values, double* increments, std::size_t width) {
-  refresh_pairs<false>(row, values, increments, width);
+THIN_VECTOR_CLONES std::size_t refresh_given_up(const Row& row, const Observations& all, const CarefulChange& careful,
+                                                std::uint32_t* fallen) {
+  return refresh<false>(row, all, careful, fallen);
+}
+
+// Where p stands among these. Without a way out, so that it is a few vector comparisons. REQUIRES: once
+THIN_VECTOR_CLONES std::uint32_t place_of(std::uint32_t p, const std::uint32_t* observation, std::uint32_t count) {
+  std::uint32_t place = 0;
+  for (std::uint32_t i = 0; i < count; ++i) place |= observation[i] == p ? i : 0;
+  return place;
 }
 
 }  // namespace
@@ -92,229 +257,241 @@ EstimationSums::EstimationSums(NeighbourhoodTable table, std::span<const double>
       column_weight_(std::move(table.column_weight)),
       increments_(table.observations, 0.0),
       retained_(table.observations, 1),
-      retained_count_(table.observations),
-      marked_at_(table.observations, 0) {
+      retained_count_(table.observations) {
   const std::size_t points = table.row_begin.size() - 1;
+  squares_.resize(table.observations);
+  for (std::size_t p = 0; p < table.observations; ++p)
+    squares_[p] = dot_product(values_.data() + p * width_, values_.data() + p * width_, width_);
   points_.resize(points);
   value_sums_.resize(points * width_);
-  means_.resize(points * width_);
-  deviations_.resize(points * width_);
   references_.assign(points * width_, 0.0);
   for (std::size_t q = 0; q < points; ++q) {
     const auto size = static_cast<std::uint32_t>(table.row_begin[q + 1] - table.row_begin[q]);
-    points_[q] = {table.row_begin[q], size, size, 0, 0, 0, 0};
-    sum_afresh(q);
-    update_mean(q);
+    points_[q] = {table.row_begin[q], size, size, 0, 0, 0, 0, 0, 0, 0};
   }
-  references_ = means_;
-  std::fill(deviations_.begin(), deviations_.end(), 0.0);
+  parallel_ranges(points, 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t q = begin; q < end; ++q) {
+      sum_afresh(q);
+      for (std::size_t c = 0; c < width_; ++c)
+        references_[q * width_ + c] = points_[q].row_size ? value_sums_[q * width_ + c] / points_[q].weight_sum : 0.0;
+      if (start == Start::with_none) {
+        points_[q].retained_count = 0;
+        points_[q].weight_sum = points_[q].largest_weight_sum = 0;
+        std::fill_n(value_sums_.begin() + static_cast<std::ptrdiff_t>(q * width_), width_, 0.0);
+      }
+      complete_point(points_[q], &value_sums_[q * width_], &references_[q * width_], width_);
+    }
+  });
   if (start == Start::with_all) return;
   std::fill(retained_.begin(), retained_.end(), std::uint8_t{0});
   retained_count_ = 0;
-  for (std::size_t q = 0; q < points; ++q) {
-    points_[q].retained_count = 0;
-    sum_afresh(q);
-    update_mean(q);
-  }
 }
 
 EstimationSums::Column EstimationSums::column(std::uint32_t p) const {
-  if (column_begin_.empty()) return {&pair_observation_[points_[p].row_begin], &pair_weight_[points_[p].row_begin]};
-  return {column_point_.data() + column_begin_[p], column_weight_.data() + column_begin_[p]};
-}
-
-std::size_t EstimationSums::column_size(std::uint32_t p) const {
-  return column_begin_.empty() ? points_[p].row_size : column_begin_[p + 1] - column_begin_[p];
+  if (column_begin_.empty())
+    return {&pair_observation_[points_[p].row_begin], &pair_weight_[points_[p].row_begin], points_[p].row_size};
+  return {column_point_.data() + column_begin_[p], column_weight_.data() + column_begin_[p],
+          column_begin_[p + 1] - column_begin_[p]};
 }
 
 void EstimationSums::sum_afresh(std::size_t q) {
-  Point& point = points_[q];
+  PointSums& point = points_[q];
   double* sums = value_sums_.data() + q * width_;
   std::fill(sums, sums + width_, 0.0);
-  point.weight_sum = 0;
-  for (std::uint64_t i = point.row_begin; i < point.row_begin + point.retained_count; ++i) {
-    const double* value = values_.data() + pair_observation_[i] * width_;
-    point.weight_sum += pair_weight_[i];
-    for (std::size_t c = 0; c < width_; ++c) sums[c] += pair_weight_[i] * value[c];
-  }
+  point.weight_sum = sum_pairs(&pair_observation_[point.row_begin], &pair_weight_[point.row_begin], point.row_size,
+                               retained_.data(), values_.data(), width_, sums);
   point.largest_weight_sum = point.weight_sum;
   point.updates = 0;
 }
 
-void EstimationSums::update_mean(std::size_t q) {
-  const Point& point = points_[q];
-  for (std::size_t i = q * width_; i < (q + 1) * width_; ++i) {
-    means_[i] = point.retained_count > 0 ? value_sums_[i] / point.weight_sum : 0.0;
-    deviations_[i] = means_[i] - references_[i];
-  }
+// Brings the retained of every row to its front.
+void EstimationSums::part_rows() {
+  parallel_ranges(points_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t q = begin; q < end; ++q) {
+      std::uint64_t border = points_[q].row_begin;
+      for (std::uint64_t i = border; i < points_[q].row_begin + points_[q].row_size; ++i) {
+        if (!retained_[pair_observation_[i]]) continue;
+        std::swap(pair_observation_[i], pair_observation_[border]);
+        std::swap(pair_weight_[i], pair_weight_[border]);
+        ++border;
+      }
+    }
+  });
 }
 
-// Across the border between the retained and the others.
+// Across the border between the retained and the others. REQUIRES: p's state and the point's count have changed, and
+// otherwise the rows are parted
 void EstimationSums::move_pair(std::size_t q, std::uint32_t p) {
-  Point& point = points_[q];
+  const PointSums& point = points_[q];
   const bool to_front = retained_[p];
-  const std::uint64_t begin = point.row_begin + (to_front ? point.retained_count : 0);
-  const std::uint64_t place = static_cast<std::uint64_t>(
-      std::find(pair_observation_.begin() + static_cast<std::ptrdiff_t>(begin), pair_observation_.end(), p) -
-      pair_observation_.begin());
-  const std::uint64_t border = point.row_begin + (to_front ? point.retained_count : point.retained_count - 1);
+  // The place that the border has moved over: the last of the front now, or the first behind it.
+  const std::uint64_t border = point.row_begin + point.retained_count - (to_front ? 1 : 0);
+  const std::uint64_t begin = to_front ? border : point.row_begin;
+  const std::uint64_t end = to_front ? point.row_begin + point.row_size : border + 1;
+  const std::uint64_t place = begin + place_of(p, &pair_observation_[begin], static_cast<std::uint32_t>(end - begin));
   std::swap(pair_observation_[place], pair_observation_[border]);
   std::swap(pair_weight_[place], pair_weight_[border]);
-  if (track_ != Track::nothing) {
-    std::swap(pair_change_[place], pair_change_[border]);
-    pair_change_[border] = 0;
-  }
-  point.retained_count += to_front ? 1 : -1;
+  std::swap(pair_change_[place], pair_change_[border]);
+  pair_change_[border] = 0;
 }
 
-void EstimationSums::update_point(std::size_t q, std::uint32_t p, double weight) {
-  move_pair(q, p);
-  Point& point = points_[q];
-  point.changed_at = step_;
-  const double signed_weight = retained_[p] ? weight : -weight;
-  point.weight_sum += signed_weight;
-  point.largest_weight_sum = std::max(point.largest_weight_sum, point.weight_sum);
-  double* sums = value_sums_.data() + q * width_;
-  const double* value = values_.data() + p * width_;
-  for (std::size_t c = 0; c < width_; ++c) sums[c] += signed_weight * value[c];
-  if (++point.updates == kFreshAfter || point.weight_sum < 0.5 * point.largest_weight_sum) sum_afresh(q);
-  update_mean(q);
-}
-
-double EstimationSums::pair_change(std::size_t q, std::uint32_t p, double weight) const {
-  const Point& point = points_[q];
-  const std::size_t first = q * width_;
-  const double* value = &values_[p * width_];
-  if (retained_[p]) {
-    // The last one leaves the estimate 0.
-    if (point.retained_count == 1)
-      return squared_norm(&references_[first], width_) - squared_norm(&deviations_[first], width_);
-    return change(&means_[first], &deviations_[first], value, width_, weight / (point.weight_sum - weight));
-  }
-  // The first one takes the estimate from 0 to its value, whatever its weight.
-  const double a = point.retained_count == 0 ? -1.0 : -weight / (point.weight_sum + weight);
-  return change(&means_[first], &deviations_[first], value, width_, a);
-}
-
-double EstimationSums::swapped_pair_change(std::size_t q, std::uint32_t out, double weight_out, std::uint32_t in,
-                                           double weight_in) const {
-  const Point& point = points_[q];
-  const bool alone = point.retained_count == 1;
-  const double weights = alone ? weight_in : point.weight_sum - weight_out + weight_in;
+// The error at q with `out` given up and `in` retained (either may be kNobody), less the error now.
+double EstimationSums::change_to(std::size_t q, double weight_sum, std::uint32_t out, double weight_out,
+                                 std::uint32_t in, double weight_in) const {
+  const PointSums& point = points_[q];
   double before = 0, after = 0;
   for (std::size_t c = 0; c < width_; ++c) {
-    const std::size_t i = q * width_ + c;
-    const double sum =
-        (alone ? 0.0 : value_sums_[i] - weight_out * values_[out * width_ + c]) + weight_in * values_[in * width_ + c];
-    const double deviation = sum / weights - references_[i];
-    after += deviation * deviation;
-    before += deviations_[i] * deviations_[i];
+    double sum = value_sums_[q * width_ + c];
+    const double reference = references_[q * width_ + c];
+    const double deviation = sum * point.one_over_weight_sum - reference;
+    before += deviation * deviation;
+    if (out != kNobody) sum = point.retained_count > 1 ? sum - weight_out * values_[out * width_ + c] : 0;
+    if (in != kNobody) sum += weight_in * values_[in * width_ + c];
+    const double deviation_after = weight_sum > 0 ? sum / weight_sum - reference : -reference;
+    after += deviation_after * deviation_after;
   }
   return after - before;
 }
 
+double EstimationSums::careful_pair_change(std::size_t q, std::uint32_t p, double weight) const {
+  const PointSums& point = points_[q];
+  if (!retained_[p]) return change_to(q, point.weight_sum + weight, kNobody, 0, p, weight);
+  return change_to(q, point.retained_count > 1 ? point.weight_sum - weight : 0, p, weight, kNobody, 0);
+}
+
+void EstimationSums::column_changes(std::uint32_t p, const Column& near, std::vector<double>& result) const {
+  if (result.size() < near.size) result.resize(near.size);
+  const auto careful = [&](std::size_t i) { result[i] = careful_pair_change(near.points[i], p, near.weights[i]); };
+  changes_of_reached({near.points, near.weights, near.size}, points_.data(), value_sums_.data(), references_.data(),
+                     values_.data() + p * width_, squares_[p], width_, retained_[p], result.data(), std::cref(careful));
+}
+
+void EstimationSums::refresh_pairs(std::size_t q, std::uint32_t begin, std::uint32_t end, bool retained,
+                                   double* changes) {
+  if (begin == end) return;
+  const PointSums& point = points_[q];
+  const std::uint64_t first = point.row_begin + begin;
+  const std::uint32_t size = end - begin;
+  if (fallen_.size() < fallen_count_ + size) fallen_.resize(2 * (fallen_count_ + size));
+  for (std::size_t c = 0; c < width_; ++c)
+    deviation_[c] = value_sums_[q * width_ + c] * point.one_over_weight_sum - references_[q * width_ + c];
+  const Row row{value_sums_.data() + q * width_, deviation_.data(),
+                // With one left, taking it out leaves none: not a number leads to careful_pair_change.
+                retained && point.retained_count < 2 ? std::numeric_limits<double>::quiet_NaN() : point.weight_sum,
+                point.one_over_weight_sum, point.mean_squared, point.mean_by_deviation, size, &pair_observation_[first],
+                &pair_weight_[first], changes};
+  const Observations all{values_.data(), squares_.data(), increments_.data(), width_};
+  const auto careful = [&](std::uint32_t i) { return careful_pair_change(q, row.observation[i], row.weight[i]); };
+  // Called by name each: through a pointer the clones would not be chosen from.
+  std::uint32_t* fallen = fallen_.data() + fallen_count_;
+  fallen_count_ += retained ? refresh_retained(row, all, std::cref(careful), fallen)
+                            : refresh_given_up(row, all, std::cref(careful), fallen);
+}
+
 void EstimationSums::refresh_row(std::size_t q) {
-  const Point& point = points_[q];
-  const auto row = [&](std::uint64_t begin, std::uint32_t size) {
-    return Row{&means_[q * width_],       &deviations_[q * width_], point.weight_sum,    size,
-               &pair_observation_[begin], &pair_weight_[begin],     &pair_change_[begin]};
-  };
-  if (track_ == Track::retained || track_ == Track::both) {
-    if (point.retained_count > 1)
-      refresh_retained(row(point.row_begin, point.retained_count), values_.data(), increments_.data(), width_);
-    else
-      refresh_pairs_one_by_one(q, 0, point.retained_count);
-  }
-  if (track_ == Track::given_up || track_ == Track::both) {
-    const std::uint32_t count = point.row_size - point.retained_count;
-    if (point.retained_count > 0 && count > 0)
-      refresh_given_up(row(point.row_begin + point.retained_count, count), values_.data(), increments_.data(), width_);
-    else
-      refresh_pairs_one_by_one(q, point.retained_count, point.row_size);
-  }
-}
-
-// Where the sums are of one observation or none, and the formulas of the loops above divide by 0.
-void EstimationSums::refresh_pairs_one_by_one(std::size_t q, std::uint32_t begin, std::uint32_t end) {
-  for (std::uint64_t i = points_[q].row_begin + begin; i < points_[q].row_begin + end; ++i) {
-    const std::uint32_t p = pair_observation_[i];
-    const double now = pair_change(q, p, pair_weight_[i]);
-    increments_[p] += now - pair_change_[i];
-    pair_change_[i] = now;
-  }
-}
-
-void EstimationSums::mark_row(std::size_t q, std::vector<std::uint32_t>& changed) {
-  const Point& point = points_[q];
-  const std::uint64_t begin = point.row_begin + (track_ == Track::given_up ? point.retained_count : 0);
-  const std::uint64_t end = point.row_begin + (track_ == Track::retained ? point.retained_count : point.row_size);
-  for (std::uint64_t i = begin; i < end; ++i) {
-    const std::uint32_t p = pair_observation_[i];
-    if (marked_at_[p] == step_) continue;
-    marked_at_[p] = step_;
-    changed.push_back(p);
-  }
+  const PointSums& point = points_[q];
+  const std::uint64_t border = point.row_begin + point.retained_count;
+  if (track_ != Track::given_up) refresh_pairs(q, 0, point.retained_count, true, &pair_change_[point.row_begin]);
+  if (track_ != Track::retained)
+    refresh_pairs(q, point.retained_count, point.row_size, false, pair_change_.data() + border);
 }
 
 void EstimationSums::track(Track which) {
   track_ = which;
   if (which == Track::nothing) return;
+  part_rows();
   pair_change_.assign(pair_observation_.size(), 0.0);
+  deviation_.resize(width_);
   std::fill(increments_.begin(), increments_.end(), 0.0);
-  for (std::size_t q = 0; q < points_.size(); ++q) refresh_row(q);
+  for (std::size_t q = 0; q < points_.size(); ++q) {
+    fallen_count_ = 0;
+    refresh_row(q);
+  }
 }
 
-void EstimationSums::change_state(std::uint32_t p, std::vector<std::uint32_t>* changed) {
+// Asks for the memory of a row, which lies far from the one before.
+void EstimationSums::fetch(std::size_t q) const {
+  const auto lines = [](const auto* from, std::size_t count) {
+    const auto* bytes = reinterpret_cast<const char*>(from);
+    for (std::size_t i = 0; i < count * sizeof(*from); i += kCacheLineBytes) __builtin_prefetch(bytes + i);
+  };
+  const PointSums& point = points_[q];
+  const std::uint64_t begin = point.row_begin + (track_ == Track::given_up ? point.retained_count : 0);
+  const std::size_t size = track_ == Track::retained ? point.retained_count : point.row_begin + point.row_size - begin;
+  lines(&pair_observation_[begin], size);
+  lines(&pair_weight_[begin], size);
+  lines(&pair_change_[begin], size);
+}
+
+void EstimationSums::compute_increments() {
+  std::fill(increments_.begin(), increments_.end(), 0.0);
+  deviation_.resize(width_);
+  for (std::size_t q = 0; q < points_.size(); ++q) {
+    changes_.assign(points_[q].row_size, 0.0);
+    fallen_count_ = 0;
+    refresh_pairs(q, 0, points_[q].row_size, points_[q].retained_count > 0, changes_.data());
+  }
+}
+
+void EstimationSums::change_state(std::uint32_t p) {
   // A copy: where the table is symmetric, the column is a row, and its pairs are about to move.
-  const auto [points, weights] = column(p);
-  const std::size_t count = column_size(p);
-  reached_.assign(points, points + count);
-  reached_weight_.assign(weights, weights + count);
+  const Column near = column(p);
+  reached_.assign(near.points, near.points + near.size);
+  reached_weight_.assign(near.weights, near.weights + near.size);
 
   retained_[p] = !retained_[p];
-  retained_count_ += retained_[p] ? 1 : -1;
+  const bool retained = retained_[p];
+  retained_count_ += retained ? 1 : -1;
   increments_[p] = 0;
+  fallen_count_ = 0;
   ++step_;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t q = reached_[i];
-    update_point(q, p, reached_weight_[i]);
-    if (track_ == Track::nothing) continue;
-    refresh_row(q);
-    if (changed) mark_row(q, *changed);
+  const auto afresh = [&](std::size_t i) { sum_afresh(reached_[i]); };
+  update_reached({reached_.data(), reached_weight_.data(), reached_.size()}, points_.data(), value_sums_.data(),
+                 references_.data(), values_.data() + p * width_, width_, retained, step_, std::cref(afresh));
+  if (track_ == Track::nothing) return;
+  for (std::size_t i = 0; i < reached_.size(); ++i) {
+    if (i + kRowsAhead < reached_.size()) fetch(reached_[i + kRowsAhead]);
+    move_pair(reached_[i], p);
+    refresh_row(reached_[i]);
   }
 }
 
 double EstimationSums::increment(std::uint32_t p) const {
-  const auto [points, weights] = column(p);
+  const Column near = column(p);
+  column_changes(p, near, changes_);
   double sum = 0;
-  for (std::size_t i = 0; i < column_size(p); ++i) sum += pair_change(points[i], p, weights[i]);
+  for (std::size_t i = 0; i < near.size; ++i) sum += changes_[i];
   return sum;
 }
 
 double EstimationSums::swap_increment(std::uint32_t out, std::uint32_t in) {
   weight_out_.resize(points_.size(), 0.0);
-  const auto [points_out, weights_out] = column(out);
-  const auto [points_in, weights_in] = column(in);
-  const std::size_t count_out = column_size(out), count_in = column_size(in);
-  for (std::size_t i = 0; i < count_out; ++i) weight_out_[points_out[i]] = weights_out[i];
+  const Column near_out = column(out), near_in = column(in);
+  column_changes(out, near_out, changes_out_);
+  column_changes(in, near_in, changes_);
+  for (std::size_t i = 0; i < near_out.size; ++i) weight_out_[near_out.points[i]] = near_out.weights[i];
   double sum = 0;
-  for (std::size_t i = 0; i < count_in; ++i) {
-    double& weight_out = weight_out_[points_in[i]];
-    sum += weight_out > 0 ? swapped_pair_change(points_in[i], out, weight_out, in, weights_in[i])
-                          : pair_change(points_in[i], in, weights_in[i]);
-    weight_out = 0;
+  for (std::size_t i = 0; i < near_in.size; ++i) {
+    const std::uint32_t q = near_in.points[i];
+    const double weight_in = near_in.weights[i], weight_out = weight_out_[q];
+    weight_out_[q] = 0;
+    sum += weight_out > 0
+               ? change_to(q, (points_[q].retained_count > 1 ? points_[q].weight_sum - weight_out : 0) + weight_in, out,
+                           weight_out, in, weight_in)
+               : changes_[i];
   }
-  for (std::size_t i = 0; i < count_out; ++i) {
-    if (weight_out_[points_out[i]] > 0) sum += pair_change(points_out[i], out, weights_out[i]);
-    weight_out_[points_out[i]] = 0;
+  for (std::size_t i = 0; i < near_out.size; ++i) {
+    double& weight_out = weight_out_[near_out.points[i]];
+    if (weight_out > 0) sum += changes_out_[i];
+    weight_out = 0;
   }
   return sum;
 }
 
 bool EstimationSums::changed_since(std::uint32_t p, std::uint32_t step) const {
-  const std::uint32_t* points = column(p).first;
-  for (std::size_t i = 0; i < column_size(p); ++i)
-    if (points_[points[i]].changed_at > step) return true;
+  const Column near = column(p);
+  for (std::size_t i = 0; i < near.size; ++i)
+    if (points_[near.points[i]].changed_at > step) return true;
   return false;
 }
 
@@ -327,14 +504,19 @@ std::vector<std::uint32_t> EstimationSums::retained() const {
 }
 
 std::uint32_t EstimationSums::observation_near(std::uint32_t p, double which_point, double which_pair) const {
-  const std::uint32_t q = column(p).first[static_cast<std::size_t>(which_point * static_cast<double>(column_size(p)))];
-  const Point& point = points_[q];
+  const Column near = column(p);
+  const PointSums& point = points_[near.points[static_cast<std::size_t>(which_point * static_cast<double>(near.size))]];
   return pair_observation_[point.row_begin + static_cast<std::uint64_t>(which_pair * point.row_size)];
 }
 
 double EstimationSums::error_sum() const {
   double sum = 0;
-  for (std::size_t q = 0; q < points_.size(); ++q) sum += squared_norm(&deviations_[q * width_], width_);
+  for (std::size_t q = 0; q < points_.size(); ++q)
+    for (std::size_t c = 0; c < width_; ++c) {
+      const double deviation =
+          value_sums_[q * width_ + c] * points_[q].one_over_weight_sum - references_[q * width_ + c];
+      sum += deviation * deviation;
+    }
   return sum;
 }
 

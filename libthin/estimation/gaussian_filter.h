@@ -4,7 +4,7 @@
 //   est_P(x) = sum_p f(p) w(|x - p|) / sum_p w(|x - p|),   w(s) = exp(-s² / h²),   s <= 3h,   p in P.
 // Where no observation of P is within 3h the estimate is 0: values are innovations, so the first guess stands.
 
-#include <cmath>
+#include <span>
 
 namespace thin {
 
@@ -12,9 +12,11 @@ struct GaussianFilter {
   double bandwidth_km = 100;  // h
 
   double radius_km() const { return 3 * bandwidth_km; }
-  double weight(double distance_squared_km2) const {
-    return std::exp(-distance_squared_km2 / (bandwidth_km * bandwidth_km));
-  }
+
+  // w of each squared distance, km², to within 2 units in the last place. The exponential is our own, of nothing but
+  // additions and multiplications, so that its bits are the same on every processor. REQUIRES: 0 <= each <= (26 h)²
+  void weigh(std::span<const double> distances_squared_km2, double* weights) const;
+  double weight(double distance_squared_km2) const;
 };
 
 }  // namespace thin

@@ -26,7 +26,7 @@ std::vector<std::vector<std::uint32_t>> strata(std::size_t n, std::span<const do
 // The cheapest of a stratum, taken one after the other.
 class Candidates {
  public:
-  Candidates(EstimationSums& sums, Update update) : sums_(sums), update_(update), queue_(sums, update) {}
+  Candidates(EstimationSums& sums, Update update) : sums_(sums), queue_(sums, update) {}
 
   void add(std::uint32_t p) { queue_.add(p); }
   void drop(std::uint32_t p) { queue_.drop(p); }
@@ -37,16 +37,13 @@ class Candidates {
   // Changes the state of p, the cheapest.
   void take(std::uint32_t p) {
     queue_.drop(p);
-    changed_.clear();
-    sums_.change_state(p, update_ == Update::full ? &changed_ : nullptr);
-    queue_.heed(changed_);
+    sums_.change_state(p);
+    queue_.heed_fallen();
   }
 
  private:
   EstimationSums& sums_;
-  Update update_;
   IncrementQueue queue_;
-  std::vector<std::uint32_t> changed_;
 };
 
 // The error as the steps move it.
@@ -102,7 +99,10 @@ void remove_crowded(EstimationSums& sums, const GreedyGoal& goal, Update update,
 }  // namespace
 
 void remove_greedily(EstimationSums& sums, const GreedyGoal& goal, Update update, std::vector<std::uint32_t>* order) {
-  if (update == Update::full) sums.track(EstimationSums::Track::retained);
+  if (update == Update::full)
+    sums.track(EstimationSums::Track::retained);
+  else
+    sums.compute_increments();
   const auto order_of_strata = strata(sums.observation_count(), goal.priority, true);
   if (goal.separation && goal.separation->is_demanded()) remove_crowded(sums, goal, update, order_of_strata, order);
   ErrorLimit limit(sums, goal.error_sum);
@@ -121,7 +121,10 @@ void remove_greedily(EstimationSums& sums, const GreedyGoal& goal, Update update
 }
 
 void insert_greedily(EstimationSums& sums, const GreedyGoal& goal, Update update, std::vector<std::uint32_t>* order) {
-  if (update == Update::full) sums.track(EstimationSums::Track::given_up);
+  if (update == Update::full)
+    sums.track(EstimationSums::Track::given_up);
+  else
+    sums.compute_increments();
   ErrorLimit limit(sums, goal.error_sum);
   std::vector<std::uint8_t> too_near(sums.observation_count(), 0);
   for (const auto& stratum : strata(sums.observation_count(), goal.priority, false)) {

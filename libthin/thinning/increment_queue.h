@@ -7,6 +7,7 @@
 // changes, cost nothing until then, and the choice is still the true minimum. Equal ones come by index.
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "libthin/estimation/estimation_sums.h"
@@ -21,20 +22,24 @@ enum class Update {
 
 class IncrementQueue {
  public:
-  // With full updating `sums` must track the increments of what is queued.
+  // `sums` must track the increments of what is queued, or with lazy updating have computed them all at first.
   IncrementQueue(const EstimationSums& sums, Update update)
-      : sums_(sums), update_(update), queue_(sums.observation_count()) {
+      : sums_(sums), update_(update), queue_(sums.observation_count()), keys_(sums.observation_count(), kAbsent) {
     if (update == Update::lazy) valid_at_.assign(sums.observation_count(), 0);
   }
 
   bool empty() const { return queue_.empty(); }
 
   void add(std::uint32_t p) {
-    queue_.push(p, update_ == Update::full ? sums_.tracked_increment(p) : sums_.increment(p));
+    const bool is_known = update_ == Update::full || sums_.step() == 0;
+    keys_[p] = is_known ? sums_.tracked_increment(p) : sums_.increment(p);
+    queue_.push(p, keys_[p]);
     if (update_ == Update::lazy) valid_at_[p] = sums_.step();
   }
   void drop(std::uint32_t p) {
-    if (queue_.contains(p)) queue_.erase(p);
+    if (!queue_.contains(p)) return;
+    queue_.erase(p);
+    keys_[p] = kAbsent;
   }
 
   // REQUIRES: !empty()
@@ -46,11 +51,10 @@ class IncrementQueue {
   // Of the last cheapest().
   double cheapest_increment() const { return queue_.top_key(); }
 
-  // After a change of state, with full updating: the observations whose increments it moved.
-  void heed(const std::vector<std::uint32_t>& changed) {
-    for (const std::uint32_t p : changed)
-      if (queue_.contains(p) && sums_.tracked_increment(p) < queue_.key(p))
-        queue_.update(p, sums_.tracked_increment(p));
+  // After a change of state, with full updating: makes the keys of those right whose increments fell below them.
+  void heed_fallen() {
+    for (const std::uint32_t p : sums_.fallen())
+      if (sums_.tracked_increment(p) < keys_[p]) requeue(p, sums_.tracked_increment(p));
   }
 
  private:
@@ -58,18 +62,26 @@ class IncrementQueue {
     const std::uint32_t front = queue_.top();
     if (update_ == Update::full) {
       if (queue_.top_key() == sums_.tracked_increment(front)) return true;
-      queue_.update(front, sums_.tracked_increment(front));
+      requeue(front, sums_.tracked_increment(front));
       return false;
     }
     if (!sums_.changed_since(front, valid_at_[front])) return true;
     valid_at_[front] = sums_.step();
-    queue_.update(front, sums_.increment(front));
+    requeue(front, sums_.increment(front));
     return false;
   }
+
+  void requeue(std::uint32_t p, double key) {
+    queue_.update(p, key);
+    keys_[p] = key;
+  }
+
+  static constexpr double kAbsent = -std::numeric_limits<double>::infinity();
 
   const EstimationSums& sums_;
   Update update_;
   IndexedPriorityQueue<double> queue_;
+  std::vector<double> keys_;             // the queue's, where they are found faster; kAbsent for what is not queued
   std::vector<std::uint32_t> valid_at_;  // lazy: the step at which each queued increment was computed
 };
 

@@ -83,17 +83,15 @@ class Exchange {
     IncrementQueue& from = sums_.is_retained(p) ? removals_ : insertions_;
     IncrementQueue& to = sums_.is_retained(p) ? insertions_ : removals_;
     from.drop(p);
-    changed_.clear();
-    sums_.change_state(p, &changed_);
+    sums_.change_state(p);
     to.add(p);
-    removals_.heed(changed_);
-    insertions_.heed(changed_);
+    removals_.heed_fallen();
+    insertions_.heed_fallen();
   }
 
   EstimationSums& sums_;
   const SwapRules& rules_;
   IncrementQueue removals_, insertions_;
-  std::vector<std::uint32_t> changed_;
 };
 
 // Numbers that are the same with every standard library.
