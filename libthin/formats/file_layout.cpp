@@ -11,7 +11,8 @@ namespace thin {
 namespace {
 
 constexpr std::string_view kHdf5Signature("\x89HDF\r\n\x1a\n", 8);
-constexpr std::string_view kReads = "This version reads BUFR with AMSU-A (310008, 310009).";
+constexpr std::string_view kReads =
+    "Read are BUFR with soundings, and netCDF: IODA, GSI diagnostics, feedback files, CF.";
 
 std::string_view text_of(std::span<const std::uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -45,17 +46,15 @@ FileLayout layout_of(std::span<const std::uint8_t> bytes) {
 }
 
 Error refusal(FileLayout layout, std::span<const std::uint8_t> bytes, const std::string& name) {
-  assert(layout != FileLayout::bufr);
+  assert(layout != FileLayout::bufr && layout != FileLayout::netcdf);
   const std::string reads(kReads);
   switch (layout) {
     case FileLayout::empty:
       return {ErrorKind::incomplete, name + ": the file is empty. Wait for its bytes, or ask the sender for it again."};
-    case FileLayout::netcdf:
-      return {ErrorKind::input, name + ": a netCDF or HDF5 file, for which there is no reader yet. " + reads};
     case FileLayout::grib:
       return {ErrorKind::input, name + ": a GRIB file holds fields, not soundings. " + reads};
     default:
-      return {ErrorKind::input, name + ": no BUFR message in it (" + first_bytes(bytes) + "). " + reads};
+      return {ErrorKind::input, name + ": no BUFR message in it, nor netCDF (" + first_bytes(bytes) + "). " + reads};
   }
 }
 

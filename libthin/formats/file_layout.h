@@ -15,7 +15,7 @@ enum class FileLayout { empty, bufr, netcdf, grib, unknown };
 FileLayout layout_of(std::span<const std::uint8_t> bytes);
 
 // The error for a file whose layout has no reader. Incomplete for an empty one: it may not have been written yet.
-// REQUIRES: layout != bufr
+// REQUIRES: neither bufr nor netcdf
 Error refusal(FileLayout layout, std::span<const std::uint8_t> bytes, const std::string& name);
 
 }  // namespace thin

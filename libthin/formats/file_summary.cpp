@@ -16,6 +16,21 @@
 namespace thin {
 namespace {
 
+void summarise_innovations(const ObservationSet& set, std::size_t place, ChannelSummary& channel) {
+  double count = 0, sum_k = 0, squares_k2 = 0;
+  for (std::size_t i = 0; i < set.first_guess_k.size() / set.channel_count(); ++i) {
+    const double innovation_k = set.values_of(i)[place] - set.first_guess_k[i * set.channel_count() + place];
+    if (std::isnan(innovation_k)) continue;
+    ++count;
+    sum_k += innovation_k;
+    squares_k2 += innovation_k * innovation_k;
+  }
+  channel.innovation_mean_k = sum_k / count;  // NaN for none
+  channel.innovation_deviation_k =
+      std::sqrt(std::max(0.0, squares_k2 / count - channel.innovation_mean_k * channel.innovation_mean_k));
+  if (count == 0) channel.innovation_deviation_k = std::numeric_limits<double>::quiet_NaN();
+}
+
 ChannelSummary summarise_channel(const ObservationSet& set, std::size_t place) {
   ChannelSummary channel;
   channel.channel = set.channels[place];
@@ -34,6 +49,7 @@ ChannelSummary summarise_channel(const ObservationSet& set, std::size_t place) {
   channel.mean_k = sum_k / static_cast<double>(channel.present);
   if (channel.present == 0)
     channel.minimum_k = channel.mean_k = channel.maximum_k = std::numeric_limits<double>::quiet_NaN();
+  summarise_innovations(set, place, channel);
   return channel;
 }
 
@@ -81,7 +97,8 @@ FileSummary summarise_observations(const ObservationSet& observations) {
   std::set<std::pair<std::int32_t, std::int32_t>> scan_lines;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     ++platforms[observations.platform[i]];
-    scan_lines.emplace(observations.platform[i], observations.scan_line[i]);
+    if (observations.scan_line[i] != kUnknownNumber)
+      scan_lines.emplace(observations.platform[i], observations.scan_line[i]);
   }
   for (const auto& [platform, count] : platforms) summary.platforms.push_back({platform, count});
   summary.scan_lines = scan_lines.size();
@@ -89,17 +106,16 @@ FileSummary summarise_observations(const ObservationSet& observations) {
   summary.first_time_ms = *first;
   summary.last_time_ms = *last;
   summary.area = smallest_area(observations);
+  summary.has_first_guess = !observations.first_guess_k.empty();
   for (std::size_t place = 0; place < observations.channels.size(); ++place)
     summary.channels.push_back(summarise_channel(observations, place));
   return summary;
 }
 
-Result<FileSummary> summarise_file(const std::string& path) {
+Result<FileSummary> summarise_file(const std::string& path, const InputOptions& options) {
   const Result<std::vector<std::uint8_t>> bytes = read_file_bytes(path);
   if (!bytes) return bytes.error();
-  const FileLayout layout = layout_of(*bytes);
-  if (layout != FileLayout::bufr) return refusal(layout, *bytes, path);
-  Result<ReadObservations> contents = read_bufr(*bytes, path);
+  Result<ReadObservations> contents = read_observations(*bytes, path, options);
   if (!contents) return contents.error();
 
   FileSummary summary = summarise_observations(contents->observations);
@@ -107,7 +123,8 @@ Result<FileSummary> summarise_file(const std::string& path) {
   summary.instrument = contents->instrument;
   summary.messages = contents->message_count;
   summary.skipped = std::move(contents->skipped);
-  summarise_messages(scan_bufr(*bytes), contents->observations, summary);
+  summary.notes = std::move(contents->notes);
+  if (layout_of(*bytes) == FileLayout::bufr) summarise_messages(scan_bufr(*bytes), contents->observations, summary);
   return summary;
 }
 

@@ -10,7 +10,7 @@ namespace thin {
 namespace {
 
 // Of the layout below. A file of another version is refused: staged files live no longer than a window.
-constexpr int kStagedVersion = 2;
+constexpr int kStagedVersion = 3;
 constexpr const char* kVersionName = "thin_staged_version";
 
 // Of the i-th further variable: its own name may hold what netCDF does not allow in one.
@@ -197,6 +197,9 @@ Result<void> write_staged(const std::string& path, const ReadObservations& conte
   file.put_attribute("instrument", contents.instrument);
   file.put_attribute("message_count", contents.message_count);
   file.put_attribute("value_kind", static_cast<int>(contents.observations.value_kind));
+  std::string notes;
+  for (const std::string& note : contents.notes) notes += note + "\n";
+  file.put_attribute("notes", notes);
   put_observations(file, contents.observations);
   put_skipped(file, contents.skipped);
   const Result<std::vector<std::uint8_t>> image = file.finish();
@@ -216,6 +219,8 @@ Result<ReadObservations> read_staged(const std::string& path) {
   contents.layout = file.text_attribute("layout");
   contents.instrument = file.text_attribute("instrument");
   contents.message_count = static_cast<std::uint32_t>(file.number_attribute("message_count"));
+  std::istringstream notes(file.text_attribute("notes"));
+  for (std::string note; std::getline(notes, note);) contents.notes.push_back(note);
   const double value_kind = file.number_attribute("value_kind");
   if (value_kind != 0 && value_kind != 1) file.fail("it holds values of a kind that this version lacks");
   if (file.ok()) contents.observations = get_observations(file);

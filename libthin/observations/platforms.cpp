@@ -19,6 +19,7 @@ constexpr std::pair<std::int32_t, const char*> kPlatforms[] = {
 std::string platform_name(std::int32_t platform) {
   for (const auto& [number, name] : kPlatforms)
     if (number == platform) return name;
+  if (platform < 0) return "unknown satellite";
   return "satellite " + std::to_string(platform);
 }
 

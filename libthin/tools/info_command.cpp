@@ -49,11 +49,17 @@ std::string skipped_lines(const FileSummary& summary) {
 }
 
 std::string channel_table(const FileSummary& summary) {
-  std::string text = fmt::format("  {:>7}  {:>8}  {:>8}  {:>8}  {:>8}  {:>8}\n", "channel", "present", "missing",
-                                 "min K", "mean K", "max K");
-  for (const ChannelSummary& channel : summary.channels)
-    text += fmt::format("  {:>7}  {:>8}  {:>8}  {:>8}  {:>8}  {:>8}\n", channel.channel, channel.present,
-                        channel.missing, kelvin(channel.minimum_k), kelvin(channel.mean_k), kelvin(channel.maximum_k));
+  std::string text = fmt::format("  {:>7}  {:>8}  {:>8}  {:>8}  {:>8}  {:>8}", "channel", "present", "missing", "min K",
+                                 "mean K", "max K");
+  text += summary.has_first_guess ? "  innovation: mean K  deviation K\n" : "\n";
+  for (const ChannelSummary& channel : summary.channels) {
+    text += fmt::format("  {:>7}  {:>8}  {:>8}  {:>8}  {:>8}  {:>8}", channel.channel, channel.present, channel.missing,
+                        kelvin(channel.minimum_k), kelvin(channel.mean_k), kelvin(channel.maximum_k));
+    if (summary.has_first_guess)
+      text +=
+          fmt::format("  {:>18}  {:>11}", kelvin(channel.innovation_mean_k), kelvin(channel.innovation_deviation_k));
+    text += "\n";
+  }
   return text;
 }
 
@@ -62,15 +68,19 @@ std::string table_of(const std::string& path, const FileSummary& summary) {
     return fmt::format("  {:<12}  {}\n", name, value);
   };
   std::string text = path + "\n";
-  text += line("layout", summary.layout + " edition " + joined(summary.editions));
+  const bool has_messages = !summary.editions.empty();
+  text += line("layout", summary.layout + (has_messages ? " edition " + joined(summary.editions) : ""));
   text += line("instrument", summary.instrument);
-  text += line("messages", fmt::format("{}, of which {} in use", summary.messages, summary.messages_in_use));
+  if (has_messages)
+    text += line("messages", fmt::format("{}, of which {} in use", summary.messages, summary.messages_in_use));
   text += skipped_lines(summary);
-  text += line("subsets", fmt::format("{}, of which {} usable", summary.subsets_in_use, summary.observations));
-  text += line("descriptors", joined(summary.descriptors));
+  if (has_messages)
+    text += line("subsets", fmt::format("{}, of which {} usable", summary.subsets_in_use, summary.observations));
+  if (has_messages) text += line("descriptors", joined(summary.descriptors));
+  for (const std::string& note : summary.notes) text += line("note", note);
   text += line("satellites", satellites(summary));
   text += line("time", to_iso8601(summary.first_time_ms) + " to " + to_iso8601(summary.last_time_ms));
-  text += line("scan lines", std::to_string(summary.scan_lines));
+  text += line("scan lines", summary.scan_lines ? std::to_string(summary.scan_lines) : "unknown");
   text += line("latitude", fmt::format("{:.4f} to {:.4f}", summary.area.south_deg, summary.area.north_deg));
   text += line("longitude", fmt::format("{:.4f} to {:.4f}{}", summary.area.west_deg, summary.area.east_deg,
                                         summary.area.west_deg > summary.area.east_deg ? ", over the date line" : ""));
@@ -109,7 +119,10 @@ nlohmann::ordered_json json_of(const FileSummary& summary) {
                                 {"missing", channel.missing},
                                 {"minimum_k", json_number(channel.minimum_k)},
                                 {"mean_k", json_number(channel.mean_k)},
-                                {"maximum_k", json_number(channel.maximum_k)}});
+                                {"maximum_k", json_number(channel.maximum_k)},
+                                {"innovation_mean_k", json_number(channel.innovation_mean_k)},
+                                {"innovation_deviation_k", json_number(channel.innovation_deviation_k)}});
+  json["notes"] = summary.notes;
   json["skipped"] = nlohmann::ordered_json::array();
   for (const SkippedPart& part : summary.skipped)
     json["skipped"].push_back({{"message", part.message}, {"offset", part.offset}, {"reason", part.reason}});

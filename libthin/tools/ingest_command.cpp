@@ -40,13 +40,16 @@ OutcomeJson staged_json(const ReadObservations& contents) {
 }
 
 int ingest(const Arguments& arguments) {
-  if (!arguments.configuration.empty())
-    if (const Result<Settings> settings = read_settings(arguments.configuration); !settings)
-      return fail(settings.error());
+  InputOptions options;
+  if (!arguments.configuration.empty()) {
+    const Result<Settings> settings = read_settings(arguments.configuration);
+    if (!settings) return fail(settings.error());
+    options = settings->input;
+  }
 
   StepSeconds seconds;
   StepClock clock(seconds);
-  const Result<ReadObservations> contents = read_observations(arguments.input);
+  const Result<ReadObservations> contents = read_observations(arguments.input, options);
   if (!contents) return fail(without_path(contents.error(), arguments.input));
   if (contents->observations.size() == 0) return fail({ErrorKind::input, "it holds no observation that can be used"});
   clock.finish("read");

@@ -117,6 +117,7 @@ Json file_json(const FileOutcome& file) {
       file.output.messages == 0
           ? Json()
           : Json{{"messages", file.output.messages}, {"subsets", file.output.subsets}, {"bytes", file.output.bytes}};
+  if (!file.notes.empty()) json["notes"] = file.notes;
   for (const SkippedPart& part : file.skipped)
     json["skipped"].push_back({{"message", part.message}, {"offset", part.offset}, {"reason", part.reason}});
   return json;

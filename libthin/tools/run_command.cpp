@@ -61,10 +61,10 @@ struct Inputs {
 };
 
 // Reads what can be read. Errors: temporary ones; what is wrong with a file refuses that file alone.
-Result<Inputs> read_inputs(const std::vector<std::string>& paths) {
+Result<Inputs> read_inputs(const std::vector<std::string>& paths, const InputOptions& options) {
   Inputs inputs;
   for (const std::string& path : paths) {
-    Result<ReadObservations> contents = read_observations(path);
+    Result<ReadObservations> contents = read_observations(path, options);
     const std::string name = fs::path(path).filename();
     if (contents && contents->observations.size() > 0) {
       for (const SkippedPart& part : contents->skipped)
@@ -108,7 +108,7 @@ Result<int> run(const Arguments& arguments) {
 
   StepSeconds seconds;
   StepClock clock(seconds);
-  Result<Inputs> inputs = read_inputs(arguments.files);
+  Result<Inputs> inputs = read_inputs(arguments.files, settings->input);
   if (!inputs) return inputs.error();
   clock.finish("read");
   const bool some_refused = !inputs->refused.empty();

@@ -47,7 +47,7 @@ Result<Settings> read_settings(const std::string& path) {
 
 Result<Settings> read_settings(Configuration configuration) {
   Settings settings;
-  OptionTable thinning, preparation, output, run;
+  OptionTable input, thinning, preparation, output, run;
   choose_method(configuration, settings);
   thinning.add("method", settings.method_name, {});
   if (settings.thinner) {
@@ -58,6 +58,8 @@ Result<Settings> read_settings(Configuration configuration) {
   } else {
     configuration.ignore_section("thinning");
   }
+  settings.input.declare(input);
+  configuration.read_section("input", input);
   settings.preparation.declare(preparation);
   configuration.read_section("preparation", preparation);
   if (const auto conflict = settings.preparation.conflict())
@@ -71,6 +73,7 @@ Result<Settings> read_settings(Configuration configuration) {
   if (Result<void> good = configuration.finish(); !good) return good.error();
   // Not [run]: nothing in a result depends on it.
   keep_resolved("thinning", thinning, settings);
+  keep_resolved("input", input, settings);
   keep_resolved("preparation", preparation, settings);
   keep_resolved("output", output, settings);
   return settings;

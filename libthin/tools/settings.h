@@ -15,6 +15,7 @@ namespace thin {
 struct Settings {
   std::string method_name = "grid_eea";
   std::unique_ptr<Thinner> thinner;
+  InputOptions input;
   PreparationOptions preparation;
   OutputOptions output;
   int threads = 0;

@@ -86,11 +86,14 @@ Result<FileOutcome> write_file(const WindowFile& file, const std::vector<SourceR
   outcome.read = file.contents.observations.size();
   outcome.retained = retained.size();
   outcome.skipped = file.contents.skipped;
+  outcome.notes = file.contents.notes;
   const ObservationSet& observations = file.contents.observations;
   outcome.observations =
       static_cast<std::size_t>(std::count_if(observations.time_ms.begin(), observations.time_ms.end(),
                                              [&](std::int64_t time_ms) { return window.holds(time_ms); }));
-  if (retained.empty()) return outcome;
+  // With flags, a file of which nothing is retained goes out with all of it flagged.
+  const bool all_flagged = options.mode == OutputOptions::Mode::flag && outcome.observations > 0;
+  if (retained.empty() && !all_flagged) return outcome;
   if (!carries_other_messages(observations, window)) options.other_messages = OutputOptions::OtherMessages::drop;
 
   const std::string path = directory + "/" + file.name;

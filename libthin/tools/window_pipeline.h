@@ -36,6 +36,7 @@ struct FileOutcome {
   std::size_t retained = 0;
   ExtractionSummary output;  // messages = 0: no file was written
   std::vector<SkippedPart> skipped;
+  std::vector<std::string> notes;  // on how it was read
 };
 
 struct WindowOutcome {

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <set>
 
 #include "libthin/formats/observation_file.h"
 #include "libthin/observations/time.h"
 #include "tests/support/bufr_oracle.h"
 #include "tests/support/extraction_checks.h"
+#include "tests/support/netcdf_oracle.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/soundings_equal.h"
 
@@ -87,6 +89,90 @@ TEST(RealAmsuATimes, AreThoseOfTheScanNotOfTheHeader) {
   EXPECT_EQ(to_iso8601(*last).substr(0, 19), "2013-05-29T12:29:35");
 }
 
+struct IodaFile {
+  const char* name;
+  std::size_t observations, channels;
+  int platform;
+  const char* rule;
+  bool unlimited;
+};
+
+// Counts as ncdump says them.
+const IodaFile kIodaFiles[] = {
+    {"ioda/amsua_n19.20211211T210000Z.nc4", 9238, 15, kUnknownNumber,
+     "innovations: ObsValue - GsiHofXBc where GsiEffectiveQC is 0", true},
+    {"ioda/ioda_obs_space.amsua_n19.hofx.2020-12-14T210000Z.nc4", 100, 15, 223,
+     "innovations: ObsValue - GsiHofXBc where EffectiveQC is 0", false},
+    {"ioda/test-ATOVS.hdf", 200, 20, 3, "values: ObsValue", false},
+};
+
+class RealIoda : public testing::TestWithParam<IodaFile> {
+ protected:
+  void SetUp() override { THIN_REQUIRE_SHARED_DATA(); }
+};
+
+TEST_P(RealIoda, HoldsWhatNcdumpSays) {
+  const std::string path = real_file(GetParam().name);
+  const Result<ReadObservations> contents = read_observations(path);
+  ASSERT_TRUE(contents.ok()) << contents.error().message;
+  const ObservationSet& set = contents->observations;
+  EXPECT_EQ(contents->layout, "ioda");
+  EXPECT_EQ(set.size(), GetParam().observations);
+  EXPECT_EQ(set.channel_count(), GetParam().channels);
+  EXPECT_EQ(set.platform[0], GetParam().platform);
+  ASSERT_FALSE(contents->notes.empty());
+  EXPECT_EQ(contents->notes.front(), GetParam().rule);
+  // Every innovation is the difference of the two groups as netCDF-C gives them, where quality control accepts.
+  const auto variables = test::read_all_variables(path);
+  const auto number = [&](const char* group, std::size_t place) {
+    float value = 0;
+    std::memcpy(&value, variables.at(std::string(group) + "/brightnessTemperature").values[place].data(), sizeof value);
+    return static_cast<double>(value);
+  };
+  const bool gsi = variables.contains("GsiEffectiveQC/brightnessTemperature");
+  const bool has_first_guess = variables.contains("GsiHofXBc/brightnessTemperature");
+  for (std::size_t i = 0; i < set.values.size(); ++i) {
+    if (has_first_guess) {
+      const auto& flags =
+          variables.at(gsi ? "GsiEffectiveQC/brightnessTemperature" : "EffectiveQC/brightnessTemperature");
+      std::int32_t flag = 0;
+      std::memcpy(&flag, flags.values[i].data(), sizeof flag);
+      ASSERT_EQ(std::isnan(set.values[i]), flag != 0) << i;
+    }
+    if (std::isnan(set.values[i])) continue;
+    ASSERT_EQ(set.values[i], number("ObsValue", i));
+    if (!has_first_guess) continue;
+    ASSERT_EQ(set.first_guess_k[i], number("GsiHofXBc", i));
+  }
+}
+
+TEST_P(RealIoda, OutputsKeepEverythingOfTheRetained) {
+  const std::string path = real_file(GetParam().name);
+  const Result<ReadObservations> contents = read_observations(path);
+  ASSERT_TRUE(contents.ok()) << contents.error().message;
+  const test::ScratchFolder folder;
+  for (const test::Selection& selection : test::selections_of(contents->observations.source, 11)) {
+    SCOPED_TRACE(selection.name);
+    const auto summary = extract_observations(path, selection.retained, folder.path("out.nc4"), {});
+    ASSERT_TRUE(summary.ok()) << summary.error().message;
+    ASSERT_TRUE(extract_observations(path, selection.retained, folder.path("again.nc4"), {}).ok());
+    EXPECT_TRUE(test::read_bytes(folder.path("again.nc4")) == test::read_bytes(folder.path("out.nc4")));
+    std::vector<std::size_t> locations;
+    for (const SourceReference& source : selection.retained) locations.push_back(source.subset);
+    test::expect_retained(path, folder.path("out.nc4"), {{"Location", locations}});
+    const bool chunks = GetParam().unlimited || selection.name == "all";
+    // netCDF refuses to compress texts, and chunks texts alone where they were compressed.
+    const auto without_texts = [](std::multiset<std::string> lines) {
+      std::erase_if(lines, [](const std::string& line) { return line.find("variable_names:_") != std::string::npos; });
+      return lines;
+    };
+    EXPECT_EQ(without_texts(test::header_lines(folder.path("out.nc4"), chunks)),
+              without_texts(test::header_lines(path, chunks)));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, RealIoda, testing::ValuesIn(kIodaFiles));
+
 struct RefusedFile {
   const char* name;
   const char* said;  // what the error must name
@@ -107,10 +193,7 @@ const RefusedFile kRefusedFiles[] = {
     {"other/synop_multi_subset.bufr", "SYNOP"},
     {"other/temp_101.bufr", "TEMP"},
     {"other/airc_142.bufr", "AIREP"},
-    {"ioda/amsua_n19.20211211T210000Z.nc4", "netCDF"},
-    {"ioda/ioda_obs_space.amsua_n19.hofx.2020-12-14T210000Z.nc4", "netCDF"},
-    {"ioda/satwind.20211211T210000Z.nc4", "netCDF"},
-    {"ioda/test-ATOVS.hdf", "netCDF"},
+    {"ioda/satwind.20211211T210000Z.nc4", "without soundings in a layout that is read here"},
     {"bad/corruptBUFR.1", "no 7777"},
     {"bad/isaa41_cytr_broken.bufr", "section 4 runs over"},
     {"bad/isaa41_cyvv_broken.bufr", "section 3 runs over"},
