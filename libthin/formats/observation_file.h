@@ -24,7 +24,7 @@ struct SkippedPart {
 struct ReadObservations {
   ObservationSet observations;  // AMSU-A: channels 1..15; source.file is 0
   std::string layout;           // "bufr", "ioda", "gsi_diagnostics", "feedback", "cf"
-  std::string instrument;       // "AMSU-A"
+  std::string instrument;       // "AMSU-A"; "AMSU-A, MHS" where there are several
   std::uint32_t message_count = 0;
   // By offset: messages of other kinds, damaged ones, stray bytes (but padding), subsets without position or time.
   std::vector<SkippedPart> skipped;
@@ -32,9 +32,14 @@ struct ReadObservations {
   std::vector<std::string> notes;
 };
 
+// Which of two temperatures, where a BUFR message has both (ATMS); elsewhere the one that it has.
+enum class BufrTemperature { brightness, antenna };
+
 // [input]: what a file is taken to say, where its layout leaves that open.
 struct InputOptions {
   std::string platform;  // of files that don't name their satellite: a name or WMO number; empty: unknown
+
+  BufrTemperature bufr_temperature = BufrTemperature::brightness;
 
   // IODA: groups. The first of each list that the file has.
   std::string ioda_observed = "ObsValue";

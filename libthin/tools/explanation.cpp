@@ -37,18 +37,19 @@ std::string options_of_section(const Settings& settings, const std::string& sect
   return text;
 }
 
-std::string read_step(const WindowOutcome& outcome) {
+std::string read_step(const WindowOutcome& outcome, const Settings& settings) {
   std::size_t observations = 0;
   std::string files;
   for (const FileOutcome& file : outcome.files) {
     observations += file.read;
     files += line(fmt::format("{}: {} observations, {} {}", file.name, file.read, file.layout, file.instrument));
+    for (const std::string& note : file.notes) files += line("  " + note);
   }
   for (const RefusedFile& file : outcome.refused) files += line(fmt::format("{}: refused: {}", file.name, file.reason));
   return step(1, "read",
               fmt::format("{} observations of {} files, {} files refused", observations, outcome.files.size(),
                           outcome.refused.size())) +
-         files;
+         files + options_of_section(settings, "input");
 }
 
 std::string window_step(const WindowOutcome& outcome) {
@@ -155,7 +156,7 @@ std::string output_step(const WindowOutcome& outcome, const Settings& settings) 
 }  // namespace
 
 std::string explanation(const WindowOutcome& outcome, const Settings& settings) {
-  return read_step(outcome) + window_step(outcome) + duplicates_step(outcome, settings) +
+  return read_step(outcome, settings) + window_step(outcome) + duplicates_step(outcome, settings) +
          screening_step(outcome, settings) + bias_step(outcome, settings) + first_guess_step(outcome, settings) +
          thinning_step(outcome, settings) + output_step(outcome, settings);
 }

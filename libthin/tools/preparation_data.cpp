@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "libthin/formats/file_bytes.h"
-#include "libthin/formats/observation_file.h"
 #include "libthin/formats/shoreline_file.h"
 
 namespace thin {
@@ -74,13 +73,13 @@ Result<PreparationData> read_preparation_data(const PreparationOptions& options)
   return data;
 }
 
-Result<std::optional<ObservationSet>> read_companions(const PreparationOptions& options) {
+Result<std::optional<ObservationSet>> read_companions(const PreparationOptions& options, const InputOptions& input) {
   if (options.first_guess.first_guess != FirstGuess::companion) return std::optional<ObservationSet>();
   const Result<std::vector<std::string>> paths = matching_files(options.companions.files);
   if (!paths) return paths.error();
   ObservationSet companions;
   for (const std::string& path : *paths) {
-    Result<ReadObservations> contents = read_observations(path);
+    Result<ReadObservations> contents = read_observations(path, input);
     if (!contents) return contents.error();
     ObservationSet& observations = contents->observations;
     if (observations.first_guess_k.empty())

@@ -46,10 +46,11 @@ Error nothing_left(const Prepared& prepared, const ObservationSet& all, const Sc
 }
 
 Result<Prepared> prepare_files(const std::vector<WindowFile>& files, const ObservationSet& all,
-                               const TimeWindow& window, const PreparationOptions& options) {
+                               const TimeWindow& window, const Settings& settings) {
+  const PreparationOptions& options = settings.preparation;
   Result<PreparationData> data = read_preparation_data(options);
   if (!data) return data.error();
-  Result<std::optional<ObservationSet>> companions = read_companions(options);
+  Result<std::optional<ObservationSet>> companions = read_companions(options, settings.input);
   if (!companions) return companions.error();
   data->companions = std::move(*companions);
   for (const WindowFile& file : files) data->file_names.push_back(file.name);
@@ -135,7 +136,7 @@ Result<WindowOutcome> thin_window(std::vector<WindowFile> files, std::vector<Ref
   StepClock clock(outcome.seconds);
 
   const ObservationSet all = merged(files);
-  Result<Prepared> prepared = prepare_files(files, all, window, settings.preparation);
+  Result<Prepared> prepared = prepare_files(files, all, window, settings);
   if (!prepared) return prepared.error();
   outcome.prepared = std::move(*prepared);
   if (outcome.prepared.observations.size() == 0)

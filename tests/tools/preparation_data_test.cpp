@@ -54,14 +54,14 @@ TEST_F(PreparationDataTest, NamesTheFileThatIsNotThere) {
 }
 
 TEST_F(PreparationDataTest, CompanionsMayStillCome) {
-  EXPECT_FALSE(*read_companions(options_));
+  EXPECT_FALSE(*read_companions(options_, {}));
   options_.first_guess.first_guess = FirstGuess::companion;
   options_.companions.files = {scratch_.path("guess-*.nc")};
-  const auto none = read_companions(options_);
+  const auto none = read_companions(options_, {});
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().kind, ErrorKind::temporary);
   test::write_synthetic_file(scratch_.path("guess-1.nc"), "NOAA-15", test::kSyntheticBeginMs, 2);
-  const auto without = read_companions(options_);
+  const auto without = read_companions(options_, {});
   ASSERT_FALSE(without);
   EXPECT_EQ(without.error().kind, ErrorKind::input);
   EXPECT_NE(without.error().message.find("guess-1.nc: it has no first guess"), std::string::npos);
