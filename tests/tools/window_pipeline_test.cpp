@@ -177,6 +177,29 @@ TEST(WindowPipeline, SaysWhyNothingIsLeft) {
       << outcome.error().message;
 }
 
+// A file with model equivalents as its own companion: the same innovations, so the same choice.
+TEST(WindowPipeline, ACompanionGivesWhatTheFileItselfWould) {
+  THIN_REQUIRE_SHARED_DATA();
+  const ScratchFolder scratch;
+  const std::string path = test::shared_data() / "observations/ioda/amsua_n19.20211211T210000Z.nc4";
+  const std::string common =
+      std::string(kTenth) + "[input]\nplatform = \"NOAA-19\"\n[preparation]\nchannels = [5, 6]\n";
+  const auto thinned = [&](const std::string& name, const std::string& more) {
+    const Settings settings = settings_of(common + more);
+    Result<ReadObservations> contents = read_observations(path, settings.input);
+    EXPECT_TRUE(contents) << contents.error().message;
+    auto outcome = thin_window({{"a.nc4", path, std::move(*contents)}}, {}, {}, settings, folder(scratch, name));
+    EXPECT_TRUE(outcome) << outcome.error().message;
+    return std::move(*outcome);
+  };
+  const WindowOutcome own = thinned("own", "first_guess = \"file\"\n");
+  const WindowOutcome other = thinned("other", "first_guess = \"companion\"\ncompanion_files = [\"" + path + "\"]\n");
+  EXPECT_GT(own.prepared.first_guess.given, 1000U);
+  EXPECT_EQ(own.prepared.first_guess.given, other.prepared.first_guess.given);
+  EXPECT_EQ(own.prepared.observations.values, other.prepared.observations.values);
+  EXPECT_EQ(own.retained, other.retained);
+}
+
 // Every real file: the output decodes with ecCodes alone, holds exactly the retained fields of view, and every key of
 // every retained subset equals the original.
 TEST(WindowPipeline, RealFilesKeepEveryKeyOfEveryRetainedSubset) {
