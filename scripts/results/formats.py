@@ -289,28 +289,31 @@ def four_satellites():
     return lines + ["", "The configuration:", "", "```toml", FOUR.strip(), "```", ""]
 
 
-# ---- fuzzing, from the logs of runs -----------------------------------------------------------------------------------
+# ---- fuzzing, from the logs of runs ------------------------------------------------------------------------------------
+
+
+LOGS = ROOT / "build/fuzz-logs"
 
 
 def fuzz_lines():
-    """libFuzzer's last line, or AFL++'s statistics, of every log under build/fuzz."""
+    """From what libFuzzer printed: `scripts/fuzz bufr 30 2>&1 | tee build/fuzz-logs/bufr.log`."""
     rows = []
-    for path in sorted((ROOT / "build/fuzz").rglob("*")):
-        if path.suffix != ".log" and path.name != "fuzzer_stats":
-            continue
+    for path in sorted(LOGS.glob("*.log")):
         text = path.read_text(encoding="utf-8", errors="replace")
-        if done := re.findall(r"Done (\d+) (?:runs|executions) in (\d+) second", text):
+        if done := re.findall(r"Done (\d+) runs in (\d+) second", text):
             runs, seconds = done[-1]
-        elif "run_time" in text:
-            facts = dict(re.findall(r"^(\w+)\s*:\s*(.*)$", text, re.M))
-            runs, seconds = facts["execs_done"], facts["run_time"]
+        elif (counts := re.findall(r"^#(\d+): cov", text, re.M)) and (times := re.findall(r"time: (\d+)s", text)):
+            runs, seconds = counts[-1], times[-1]  # with -fork
         else:
             continue
-        name = path.relative_to(ROOT / "build/fuzz")
-        rows.append(f"| {name} | {int(runs):,} | {int(seconds) / 60:.0f} | {len(re.findall('ERROR: |SUMMARY: ', text))} |")
+        findings = ROOT / "build/fuzz-findings" / path.stem
+        kept = len(list(findings.iterdir())) if findings.is_dir() else 0
+        rows.append(f"| {path.stem} | {int(runs):,} | {int(seconds) / 60:.0f} | {kept} |")
+    pages = [f"[{page.stem}]({page.name})" for page in sorted((ROOT / "docs/results").glob("fuzzing*.md"))]
+    told = [f"What was found: {', '.join(pages)}.", ""] if pages else []
     if not rows:
-        return ["No log of a fuzzing run lies under `build/fuzz/`.", ""]
-    return ["| log | inputs | minutes | findings in it |", "| --- | --- | --- | --- |", *rows, ""]
+        return [f"No log of a fuzzing run lies under `{LOGS.relative_to(ROOT)}/`.", "", *told]
+    return ["| case | inputs | minutes | inputs kept as findings |", "| --- | --- | --- | --- |", *rows, "", *told]
 
 
 def bench_rows():
