@@ -4,8 +4,9 @@
 #include <cassert>
 #include <vector>
 
-#include "libthin/formats/bufr_amsua.h"
 #include "libthin/formats/bufr_file.h"
+#include "libthin/formats/bufr_soundings.h"
+#include "libthin/formats/bufr_subsets.h"
 #include "libthin/formats/ecmwf_section2.h"
 #include "libthin/formats/file_bytes.h"
 #include "libthin/formats/gts_bulletin.h"
@@ -45,9 +46,11 @@ class Extraction {
     if (!subsets) return subsets.error();
     for (const Bulletin& bulletin : scan_.bulletins)
       if (const Result<void> added = add_bulletin(bulletin, *subsets); !added) return added.error();
+    // Tables are written for the data behind them, never alone.
+    if (summary_.messages == tables_written_) summary_.messages = 0;
     if (summary_.messages > 0 && scan_.has_end_marker && keep_headers())
       output_.insert(output_.end(), kGtsLengthPrefixSize, '0');
-    summary_.bytes = output_.size();
+    summary_.bytes = summary_.messages > 0 ? output_.size() : 0;
     return summary_;
   }
 
@@ -80,20 +83,27 @@ class Extraction {
 
   Result<void> add_message(const BufrMessage& message, const std::vector<std::uint32_t>& subsets) {
     const Bytes bytes = original_.subspan(message.offset, message.length);
-    if (subsets.size() == static_cast<std::size_t>(message.header.subset_count) && !subsets.empty()) {
+    const bool is_tables = message.header.data_category == kTablesCategory;
+    if (!is_tables && subsets.size() == static_cast<std::size_t>(message.header.subset_count) && !subsets.empty()) {
+      tables_.pass_data();
       add_verbatim(message);
       summary_.subsets += subsets.size();
       return {};
     }
-    AmsuAMessage amsua = open_amsua(bytes, message.header);
-    if (subsets.empty()) {
-      const bool keep = options_.other_messages == OutputOptions::OtherMessages::keep;
-      if (amsua.state == AmsuAMessage::State::other_kind && keep) add_verbatim(message);
+    const SoundingMessage soundings = open_soundings(bytes, message.header, tables_);
+    if (soundings.state == SoundingMessage::State::tables) {
+      add_verbatim(message);
+      ++tables_written_;
       return {};
     }
-    if (amsua.state != AmsuAMessage::State::amsua)
-      return Error{ErrorKind::input, where(message) + amsua.reason + ". The file has changed since it was read."};
-    return add_subsets(message, *amsua.message, subsets);
+    if (subsets.empty()) {
+      const bool keep = options_.other_messages == OutputOptions::OtherMessages::keep;
+      if (soundings.state == SoundingMessage::State::other_kind && keep) add_verbatim(message);
+      return {};
+    }
+    if (soundings.state != SoundingMessage::State::soundings)
+      return Error{ErrorKind::input, where(message) + soundings.reason + ". The file has changed since it was read."};
+    return add_subsets(message, soundings.data, subsets);
   }
 
   void add_verbatim(const BufrMessage& message) {
@@ -102,15 +112,15 @@ class Extraction {
     subsets_written_ += static_cast<std::uint64_t>(message.header.subset_count);
   }
 
-  Result<void> add_subsets(const BufrMessage& message, EccodesMessage& decoded,
+  Result<void> add_subsets(const BufrMessage& message, const BufrData& data,
                            const std::vector<std::uint32_t>& subsets) {
-    Result<std::vector<std::uint8_t>> extracted = decoded.extract_subsets(subsets);
-    if (!extracted) return Error{extracted.error().kind, where(message) + extracted.error().message};
-    const Result<BufrHeader> header = parse_bufr_header(*extracted);
+    const Bytes bytes = original_.subspan(message.offset, message.length);
+    std::vector<std::uint8_t> extracted = extract_subsets(bytes, message.header, data, subsets);
+    const Result<BufrHeader> header = parse_bufr_header(extracted);
     if (!header || header->subset_count != static_cast<int>(subsets.size()))
-      return Error{ErrorKind::internal, where(message) + "ecCodes extracted something else than the subsets asked for"};
-    correct_ecmwf_section2(original_.subspan(message.offset, message.length), message.header, *extracted, *header);
-    append(*extracted);
+      return Error{ErrorKind::internal, where(message) + "something else was extracted than the subsets asked for"};
+    correct_ecmwf_section2(bytes, message.header, extracted, *header);
+    append(extracted);
     ++summary_.messages;
     summary_.subsets += subsets.size();
     subsets_written_ += subsets.size();
@@ -126,7 +136,9 @@ class Extraction {
   const OutputOptions& options_;
   BufrScan scan_;
   std::vector<std::uint8_t> output_;
+  BufrFileTables tables_;
   ExtractionSummary summary_;
+  std::uint32_t tables_written_ = 0;
   std::uint64_t subsets_written_ = 0;  // with those of other kinds
 };
 

@@ -12,13 +12,13 @@ namespace thin {
 
 // As extract_observations, from the original's bytes. What happens to each part of the original:
 //
-//   AMSU-A message, all subsets retained   byte for byte
-//   AMSU-A message, some retained          ecCodes packs those subsets anew; every value, missing ones too, stays.
-//   Section
-//                                          1 stays; section 2 stays, but for ECMWF's counts (below); an uncompressed
-//                                          message stays uncompressed
-//   AMSU-A message, none retained          leaves the file
-//   AMSU-A message that can't be decoded   leaves the file
+//   soundings, all subsets retained        byte for byte
+//   soundings, some retained               those subsets, bit by bit (bufr_subsets.h). Section 1 stays; section 2
+//   stays,
+//                                          but for ECMWF's counts (below); an uncompressed message stays uncompressed
+//   soundings, none retained               leave the file
+//   soundings that can't be decoded        leave the file
+//   tables of a tank                       byte for byte, where there is something else to write
 //   message of another kind                options.other_messages: byte for byte, or leaves
 //   GTS envelope                           options.gts_headers: stays, its length field made right, or leaves
 //   stray bytes, padding, damage           leave

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <vector>
 
-#include "libthin/formats/bufr_amsua.h"
+#include "libthin/formats/bufr_observations.h"
 
 namespace thin {
 namespace {
@@ -27,9 +26,9 @@ class Refusals {
     for (std::size_t i = 0; i < std::min<std::size_t>(3, sorted.size()); ++i)
       list += (i ? "; " : "") + std::to_string(sorted[i].second.count) + " x " + sorted[i].first;
     if (sorted.size() > 3) list += "; and more";
-    if (sorted.empty()) return {ErrorKind::input, name + ": no BUFR message in it. Send files of BUFR with AMSU-A."};
+    if (sorted.empty()) return {ErrorKind::input, name + ": no BUFR message in it. Send files of BUFR with soundings."};
     const std::string remedy = " " + sorted.front().second.remedy;
-    return {ErrorKind::input, name + ": nothing in it is AMSU-A. Its messages: " + list + "." + remedy};
+    return {ErrorKind::input, name + ": nothing in it can be thinned. Its messages: " + list + "." + remedy};
   }
 
  private:
@@ -58,21 +57,55 @@ void skip_unused_bytes(const BufrScan& scan, ReadObservations& contents, Refusal
   }
 }
 
-void read_message(std::span<const std::uint8_t> bytes, const BufrMessage& message, std::uint32_t number,
-                  ReadObservations& contents, Refusals& refusals) {
-  const auto skip = [&](const std::string& reason, const std::string& remedy) {
-    contents.skipped.push_back({number, message.offset, reason});
-    refusals.add(reason, remedy);
-  };
-  const AmsuAMessage amsua = open_amsua(bytes.subspan(message.offset, message.length), message.header);
-  if (amsua.state != AmsuAMessage::State::amsua) return skip(amsua.reason, amsua.remedy);
+// Reads messages in the order of the file.
+class MessageReader {
+ public:
+  MessageReader(std::span<const std::uint8_t> bytes, BufrTemperature temperature, ReadObservations& contents,
+                Refusals& refusals)
+      : bytes_(bytes), temperature_(temperature), contents_(contents), refusals_(refusals) {}
 
-  const Result<std::uint32_t> left_out = append_soundings(amsua, message.header, number, contents.observations);
-  if (!left_out) return skip(left_out.error().message, "It is damaged: ask the sender for it again.");
-  if (*left_out > 0)
-    skip(counted(*left_out, "subset") + " without usable position or time, or of another instrument",
-         "Ask the sender for located soundings.");
-}
+  void read(const BufrMessage& message, std::uint32_t number) {
+    const auto skip = [&](const std::string& reason, const std::string& remedy) {
+      contents_.skipped.push_back({number, message.offset, reason});
+      refusals_.add(reason, remedy);
+    };
+    const SoundingMessage soundings =
+        open_soundings(bytes_.subspan(message.offset, message.length), message.header, tables_);
+    if (soundings.state == SoundingMessage::State::tables) {
+      ++table_messages_;
+      return;
+    }
+    if (soundings.state != SoundingMessage::State::soundings) return skip(soundings.reason, soundings.remedy);
+
+    const std::uint32_t left_out = append_soundings(soundings, number, temperature_, sets_);
+    if (left_out > 0)
+      skip(counted(left_out, "subset") + " without usable position or time, or of another instrument",
+           "Ask the sender for located soundings.");
+  }
+
+  // All instruments together.
+  void finish() {
+    if (table_messages_ > 0)
+      contents_.notes.push_back("decoded with the tables that it brings, in " + counted(table_messages_, "message"));
+    for (auto& [instrument, set] : sets_) {
+      if (set.size() == 0) continue;
+      contents_.instrument += (contents_.instrument.empty() ? "" : ", ") + std::string(instrument_name(instrument));
+      if (contents_.observations.size() == 0)
+        contents_.observations = std::move(set);
+      else
+        contents_.observations.append(set);
+    }
+  }
+
+ private:
+  std::span<const std::uint8_t> bytes_;
+  BufrTemperature temperature_;
+  ReadObservations& contents_;
+  Refusals& refusals_;
+  BufrFileTables tables_;
+  std::size_t table_messages_ = 0;
+  SoundingSets sets_;
+};
 
 }  // namespace
 
@@ -83,20 +116,19 @@ Result<void> check_complete(const BufrScan& scan, const std::string& name) {
   return Error{ErrorKind::incomplete, where + ". Wait for the rest, or ask the sender for it again."};
 }
 
-Result<ReadObservations> read_bufr(std::span<const std::uint8_t> bytes, const std::string& name) {
+Result<ReadObservations> read_bufr(std::span<const std::uint8_t> bytes, const std::string& name,
+                                   BufrTemperature temperature) {
   const BufrScan scan = scan_bufr(bytes);
   if (const Result<void> complete = check_complete(scan, name); !complete) return complete.error();
   ReadObservations contents;
   contents.layout = "bufr";
-  contents.instrument = "AMSU-A";
   contents.message_count = static_cast<std::uint32_t>(scan.messages.size());
-  contents.observations.channels.resize(kAmsuAChannelCount);
-  std::iota(contents.observations.channels.begin(), contents.observations.channels.end(), 1);
 
   Refusals refusals;
   skip_unused_bytes(scan, contents, refusals);
-  for (std::uint32_t number = 0; number < scan.messages.size(); ++number)
-    read_message(bytes, scan.messages[number], number, contents, refusals);
+  MessageReader reader(bytes, temperature, contents, refusals);
+  for (std::uint32_t number = 0; number < scan.messages.size(); ++number) reader.read(scan.messages[number], number);
+  reader.finish();
   std::stable_sort(contents.skipped.begin(), contents.skipped.end(),
                    [](const SkippedPart& a, const SkippedPart& b) { return a.offset < b.offset; });
   if (contents.observations.size() == 0) return refusals.error(name);

@@ -32,14 +32,17 @@ Result<std::size_t> section_length(std::span<const std::uint8_t> message, int se
 bool read_section1(std::span<const std::uint8_t> section, BufrHeader& header) {
   header.master_table = section[3];
   header.master_table_version = section[header.edition == 4 ? 13 : 10];
+  header.local_table_version = section[header.edition == 4 ? 14 : 11];
   if (header.edition == 4) {
     header.centre = static_cast<int>(big_endian(section, 4, 2));
+    header.sub_centre = static_cast<int>(big_endian(section, 6, 2));
     header.data_category = section[10];
     header.data_sub_category = section[12];
     return (section[9] & 0x80) != 0;
   }
   // Edition 3 has the sub-centre in front of the centre, edition 2 one centre of two bytes.
   header.centre = header.edition == 3 ? section[5] : static_cast<int>(big_endian(section, 4, 2));
+  header.sub_centre = header.edition == 3 ? section[4] : 0;
   header.data_category = section[8];
   header.data_sub_category = section[9];
   return (section[7] & 0x80) != 0;
@@ -93,10 +96,13 @@ Result<BufrHeader> parse_bufr_header(std::span<const std::uint8_t> message) {
   length = section_length(message, 3, offset, kSmallestSection3);
   if (!length) return length.error();
   read_section3(message.subspan(offset, *length), header);
+  header.section3_offset = offset;
   offset += *length;
 
   length = section_length(message, 4, offset, kSmallestSection4);
   if (!length) return length.error();
+  header.section4_offset = offset;
+  header.section4_length = *length;
   return header;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 // What sections 0, 1 and 3 of one BUFR message say (WMO Manual on Codes, FM 94; editions 2, 3 and 4), read without
-// ecCodes: enough to tell messages of different kinds apart, and to keep a message whose sections do not fit out of a
-// decoder that would trust them.
+// any tables: enough to tell messages of different kinds apart, and to keep those whose sections do not fit out of what
+// trusts them.
 
 #include <cstddef>
 #include <cstdint>
@@ -21,14 +21,19 @@ constexpr int kCentreEcmwf = 98;
 struct BufrHeader {
   int edition = 0;
   int centre = 0;
+  int sub_centre = 0;
   int data_category = 0;      // BUFR table A
   int data_sub_category = 0;  // the originating centre's own
   int master_table = 0;       // 0: meteorology
   int master_table_version = 0;
+  int local_table_version = 0;
   int subset_count = 0;
   bool compressed = false;
   std::size_t section2_offset = 0;  // from the first byte of the message
   std::size_t section2_length = 0;  // 0 where there is none
+  std::size_t section3_offset = 0;
+  std::size_t section4_offset = 0;
+  std::size_t section4_length = 0;  // with its own four bytes of length and padding
   std::vector<int> descriptors;     // unexpanded, as FXXYYY: 310009
 };
 

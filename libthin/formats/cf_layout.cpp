@@ -173,10 +173,11 @@ class Reader {
 
   Result<void> read_variables() {
     for (const auto& [path, variable] : file_.variables()) {
-      if (!over_observations(variable)) continue;
+      const auto standard_name = file_.text_attribute(variable, "standard_name");
+      const bool is_place = standard_name == "latitude" || standard_name == "longitude" || standard_name == "time";
+      if (!over_observations(variable) || is_place) continue;
       Result<std::vector<double>> values = file_.numbers(variable);
       if (!values) continue;  // texts, and other things that are no numbers
-      const auto standard_name = file_.text_attribute(variable, "standard_name");
       const auto shared = std::find_if(std::begin(kSharedNames), std::end(kSharedNames),
                                        [&](const auto& entry) { return standard_name == entry.first; });
       table_.variables[shared == std::end(kSharedNames) ? path : shared->second] = std::move(*values);

@@ -34,10 +34,13 @@ void summarise_innovations(const ObservationSet& set, std::size_t place, Channel
 ChannelSummary summarise_channel(const ObservationSet& set, std::size_t place) {
   ChannelSummary channel;
   channel.channel = set.channels[place];
+  if (!set.channel_instrument.empty()) channel.instrument = set.channel_instrument[place];
+  std::uint64_t measured = 0;
   channel.minimum_k = std::numeric_limits<double>::infinity();
   channel.maximum_k = -channel.minimum_k;
   double sum_k = 0;
   for (std::size_t i = 0; i < set.size(); ++i) {
+    measured += set.measures(i, place) ? 1 : 0;
     const double value_k = set.values_of(i)[place];
     if (std::isnan(value_k)) continue;
     ++channel.present;
@@ -45,7 +48,7 @@ ChannelSummary summarise_channel(const ObservationSet& set, std::size_t place) {
     channel.minimum_k = std::min(channel.minimum_k, value_k);
     channel.maximum_k = std::max(channel.maximum_k, value_k);
   }
-  channel.missing = set.size() - channel.present;
+  channel.missing = measured - channel.present;
   channel.mean_k = sum_k / static_cast<double>(channel.present);
   if (channel.present == 0)
     channel.minimum_k = channel.mean_k = channel.maximum_k = std::numeric_limits<double>::quiet_NaN();
@@ -94,13 +97,16 @@ FileSummary summarise_observations(const ObservationSet& observations) {
   FileSummary summary;
   summary.observations = observations.size();
   std::map<std::int32_t, std::uint64_t> platforms;
+  std::map<Instrument, std::uint64_t> instruments;
   std::set<std::pair<std::int32_t, std::int32_t>> scan_lines;
   for (std::size_t i = 0; i < observations.size(); ++i) {
     ++platforms[observations.platform[i]];
+    ++instruments[observations.instrument[i]];
     if (observations.scan_line[i] != kUnknownNumber)
       scan_lines.emplace(observations.platform[i], observations.scan_line[i]);
   }
   for (const auto& [platform, count] : platforms) summary.platforms.push_back({platform, count});
+  for (const auto& [instrument, count] : instruments) summary.instruments.push_back({instrument, count});
   summary.scan_lines = scan_lines.size();
   const auto [first, last] = std::minmax_element(observations.time_ms.begin(), observations.time_ms.end());
   summary.first_time_ms = *first;

@@ -10,8 +10,9 @@
 
 namespace thin {
 
-// Statistics of one channel over all observations; the temperatures are NaN where none is present.
+// Statistics of one channel over all observations that have it; the temperatures are NaN where none is present.
 struct ChannelSummary {
+  Instrument instrument = Instrument::unknown;  // unknown: of all observations
   int channel = 0;
   std::uint64_t present = 0;
   std::uint64_t missing = 0;
@@ -21,6 +22,11 @@ struct ChannelSummary {
 
 struct PlatformSummary {
   std::int32_t platform = 0;
+  std::uint64_t observations = 0;
+};
+
+struct InstrumentSummary {
+  Instrument instrument = Instrument::unknown;
   std::uint64_t observations = 0;
 };
 
@@ -43,6 +49,7 @@ struct FileSummary {
   std::vector<std::string> notes;  // on how it was read
   bool has_first_guess = false;
   std::vector<PlatformSummary> platforms;  // by number
+  std::vector<InstrumentSummary> instruments;
   std::int64_t first_time_ms = 0, last_time_ms = 0;
   std::uint64_t scan_lines = 0;  // different known ones; the same number of two satellites is two
   Area area;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <regex>
 #include <string>
+#include <string_view>
 
 namespace thin {
 namespace {
@@ -55,7 +56,7 @@ bool is_gts_end_marker(std::span<const std::uint8_t> rest) {
 }
 
 bool is_cut_gts_heading(std::span<const std::uint8_t> rest) {
-  const std::string tail(rest.begin(), rest.end());
+  const std::string_view tail(reinterpret_cast<const char*>(rest.data()), rest.size());
   if (tail == "B" || tail.ends_with("BU") || tail.ends_with("BUF")) return true;
   if (rest.empty() || rest.size() > kLongestHeading || is_gts_end_marker(rest)) return false;
   const std::size_t digits = leading_digits(rest);

@@ -75,20 +75,20 @@ Result<ReadObservations> read_netcdf(std::span<const std::uint8_t> bytes, const 
 Result<ExtractionSummary> extract_netcdf(std::span<const std::uint8_t> bytes, const std::string& name,
                                          std::span<const SourceReference> retained, const std::string& output_path,
                                          const OutputOptions& options) {
-  if (retained.empty()) return ExtractionSummary{};
+  const bool flag = options.mode == OutputOptions::Mode::flag;
+  if (retained.empty() && !flag) return ExtractionSummary{};
   const Result<NetcdfFile> file = NetcdfFile::open(bytes, name);
   if (!file) return file.error();
   const Result<const NetcdfLayout*> layout = layout_of(*file);
   if (!layout) return layout.error();
   const std::vector<std::uint32_t> locations = locations_of(retained);
-  const bool flag = options.mode == OutputOptions::Mode::flag;
   const Result<NetcdfEdit> edit =
       flag ? (*layout)->flag(*file, locations, options) : (*layout)->subset(*file, locations, options);
   if (!edit) return edit.error();
 
   Result<std::vector<std::uint8_t>> image = changes_nothing(*file, *edit)
                                                 ? std::vector<std::uint8_t>(bytes.begin(), bytes.end())
-                                                : rewrite_netcdf(*file, *edit);
+                                                : rewrite_netcdf(*file, *edit, output_path);
   if (!image) return image.error();
   if (const Result<void> written = write_file_bytes(output_path, *image); !written) return written.error();
   const Result<void> right = check_written(**layout, output_path, *edit);

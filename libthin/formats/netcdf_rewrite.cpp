@@ -4,18 +4,22 @@
 #include <netcdf.h>
 #include <netcdf_filter.h>
 #include <netcdf_mem.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <numeric>
 
+#include "libthin/formats/file_bytes.h"
 #include "libthin/formats/netcdf_types.h"
 
 namespace thin {
 namespace {
 
-constexpr std::size_t kFirstImageSize = 1 << 20;
+// Of the image that a classic file grows in. The file is as long as the image and holds what was in its memory before,
+// unless it had to grow there: netCDF clears what it adds.
+constexpr std::size_t kFirstClassicSize = 1;
 constexpr std::size_t kSlabBytes = std::size_t{1} << 28;  // of a variable in memory at a time
 constexpr unsigned kFirstOptionalFilter = 4;              // of HDF5's: 1 to 3 are deflate, shuffle and checksum
 
@@ -58,7 +62,8 @@ void gather(const Selection& selection, std::size_t axis, const std::byte* from,
 
 class Rewriter {
  public:
-  Rewriter(const NetcdfFile& file, const NetcdfEdit& edit) : file_(file), edit_(edit) {}
+  Rewriter(const NetcdfFile& file, const NetcdfEdit& edit, const std::string& scratch_path)
+      : file_(file), edit_(edit), scratch_path_(scratch_path) {}
   ~Rewriter() {
     if (output_ >= 0) nc_abort(output_);
   }
@@ -67,11 +72,7 @@ class Rewriter {
     int format = 0;
     check(nc_inq_format(file_.id(), &format), "its format");
     is_hdf5_ = is_hdf5(format);
-    check(nc_create_mem("retained", creation_mode(format), kFirstImageSize, &output_), "a new image");
-    if (failed_) output_ = -1;
-    // Everything is written: filling first would be work for nothing.
-    int previous = 0;
-    if (!failed_) check(nc_set_fill(output_, NC_NOFILL, &previous), "a new image");
+    create(creation_mode(format));
     if (!failed_) define_group(file_.id(), output_);
     for (const auto& [name, number] : edit_.attributes) replace_attribute(name, number);
     for (const AddedVariable& variable : edit_.added) define_added(variable);
@@ -87,6 +88,33 @@ class Rewriter {
     if (failed_ || code == NC_NOERR) return;
     failed_ = true;
     error_ = file_.error(where, code);
+  }
+
+  // netCDF-4 made directly in memory lacks the order of creation in its root group, without which netCDF reads types
+  // wrongly and won't append. So a file without content is made on disk, and grows in memory from there.
+  void create(int mode) {
+    if (!is_hdf5_) return check(nc_create_mem("retained", mode, kFirstClassicSize, &output_), "a new image");
+    if (Result<void> writable = write_file_bytes(scratch_path_, {}); !writable) return keep(writable.error());
+    int blank = -1;
+    check(nc_create(scratch_path_.c_str(), mode | NC_CLOBBER, &blank), "a new file");
+    if (!failed_) check(nc_close(blank), "a new file");
+    Result<std::vector<std::uint8_t>> bytes = read_file_bytes(scratch_path_);
+    ::unlink(scratch_path_.c_str());
+    if (!bytes) return keep(bytes.error());
+    if (failed_) return;
+    NC_memio image = {};
+    image.size = bytes->size();
+    image.memory = std::malloc(bytes->size());  // netCDF's from here on
+    if (image.memory == nullptr) return check(NC_ENOMEM, "a new image");
+    std::memcpy(image.memory, bytes->data(), bytes->size());
+    check(nc_open_memio("retained", NC_WRITE, &image, &output_), "a new image");
+    if (failed_) output_ = -1;
+    if (!failed_) check(nc_redef(output_), "a new image");
+  }
+
+  void keep(const Error& error) {
+    if (!failed_) error_ = error;
+    failed_ = true;
   }
 
   void define_group(int from, int to) {
@@ -338,6 +366,7 @@ class Rewriter {
 
   const NetcdfFile& file_;
   const NetcdfEdit& edit_;
+  const std::string& scratch_path_;
   int output_ = -1;
   bool is_hdf5_ = false;
   bool failed_ = false;
@@ -360,8 +389,9 @@ bool changes_nothing(const NetcdfFile& file, const NetcdfEdit& edit) {
   });
 }
 
-Result<std::vector<std::uint8_t>> rewrite_netcdf(const NetcdfFile& file, const NetcdfEdit& edit) {
-  return Rewriter(file, edit).run();
+Result<std::vector<std::uint8_t>> rewrite_netcdf(const NetcdfFile& file, const NetcdfEdit& edit,
+                                                 const std::string& scratch_path) {
+  return Rewriter(file, edit, scratch_path).run();
 }
 
 }  // namespace thin

@@ -14,6 +14,9 @@ namespace thin {
 void InputOptions::declare(OptionTable& table) {
   table.add("platform", platform,
             {.explanation = "satellite of files that don't name theirs: a name (NOAA-19) or a WMO number"});
+  table.add_choice("bufr_temperature", bufr_temperature,
+                   {{"brightness", BufrTemperature::brightness}, {"antenna", BufrTemperature::antenna}},
+                   {.explanation = "which temperature, where BUFR has two (ATMS)"});
   table.add("ioda_observed", ioda_observed, {.explanation = "group of the observed brightness temperatures"});
   table.add("ioda_first_guess", ioda_first_guess,
             {.explanation = "groups of the model's equivalents: the first that a file has is subtracted from the "
@@ -65,7 +68,7 @@ Result<ReadObservations> read_observations(std::span<const std::uint8_t> bytes, 
                                            const InputOptions& options) {
   switch (layout_of(bytes)) {
     case FileLayout::bufr:
-      return read_bufr(bytes, name);
+      return read_bufr(bytes, name, options.bufr_temperature);
     case FileLayout::netcdf:
       return read_netcdf(bytes, name, options);
     default:

@@ -24,7 +24,7 @@ struct SkippedPart {
 struct ReadObservations {
   ObservationSet observations;  // AMSU-A: channels 1..15; source.file is 0
   std::string layout;           // "bufr", "ioda", "gsi_diagnostics", "feedback", "cf"
-  std::string instrument;       // "AMSU-A"
+  std::string instrument;       // "AMSU-A"; "AMSU-A, MHS" where there are several
   std::uint32_t message_count = 0;
   // By offset: messages of other kinds, damaged ones, stray bytes (but padding), subsets without position or time.
   std::vector<SkippedPart> skipped;
@@ -32,9 +32,14 @@ struct ReadObservations {
   std::vector<std::string> notes;
 };
 
+// Which of two temperatures, where a BUFR message has both (ATMS); elsewhere the one that it has.
+enum class BufrTemperature { brightness, antenna };
+
 // [input]: what a file is taken to say, where its layout leaves that open.
 struct InputOptions {
   std::string platform;  // of files that don't name their satellite: a name or WMO number; empty: unknown
+
+  BufrTemperature bufr_temperature = BufrTemperature::brightness;
 
   // IODA: groups. The first of each list that the file has.
   std::string ioda_observed = "ObsValue";
@@ -90,7 +95,8 @@ struct ExtractionSummary {
 
 // Writes the retained observations of `original_path` to `output_path` (created or replaced; not yet synced to disk).
 // retained: references into the original, any order, no duplicates; `file` is not looked at. Messages are written in
-// their order in the original, subsets in theirs. Where nothing would be written, no file is created and messages is 0.
+// their order in the original, subsets in theirs. Where nothing would be written, no file is created and messages is 0;
+// with flags there always is.
 // The same input gives the same bytes.
 Result<ExtractionSummary> extract_observations(const std::string& original_path,
                                                std::span<const SourceReference> retained,

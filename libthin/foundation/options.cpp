@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -37,6 +38,14 @@ std::string written(const std::vector<T>& values) {
   std::vector<std::string> parts;
   parts.reserve(values.size());
   for (const T& value : values) parts.push_back(written(value));
+  return fmt::format("[{}]", fmt::join(parts, ", "));
+}
+
+// Phrases: whole numbers stand bare.
+std::string written_phrases(const std::vector<std::string>& phrases) {
+  std::vector<std::string> parts;
+  parts.reserve(phrases.size());
+  for (const std::string& phrase : phrases) parts.push_back(whole_number(phrase) ? phrase : quoted(phrase));
   return fmt::format("[{}]", fmt::join(parts, ", "));
 }
 
@@ -140,6 +149,18 @@ std::optional<std::vector<OptionValue>> elements_of(const OptionValue& value) {
   return std::nullopt;
 }
 
+// The phrases of a list, or of one text or number alone.
+std::optional<std::vector<std::string>> phrases_of(const OptionValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return std::vector{*text};
+  if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::vector{written(*integer)};
+  if (const auto* texts = std::get_if<std::vector<std::string>>(&value)) return *texts;
+  const auto* integers = std::get_if<std::vector<std::int64_t>>(&value);
+  if (!integers) return std::nullopt;
+  std::vector<std::string> phrases;
+  for (const std::int64_t integer : *integers) phrases.push_back(written(integer));
+  return phrases;
+}
+
 template <class T>
 Problem convert(const OptionValue& value, const OptionFacts& facts, std::vector<T>& field) {
   const auto elements = elements_of(value);
@@ -221,6 +242,19 @@ void OptionTable::add(std::string name, std::vector<double>& field, const Option
   add_option(std::move(name), "list of numbers", facts, assigner(field, facts), writer(field));
 }
 
+void OptionTable::add_phrases(std::string name, std::vector<std::string>& field, const OptionFacts& facts,
+                              const Understand& understand) {
+  auto assign = [&field, understand](const OptionValue& value) -> Problem {
+    auto phrases = phrases_of(value);
+    if (!phrases) return must_be("a list of texts or integers", value);
+    if (Problem problem = understand(*phrases)) return problem;
+    field = std::move(*phrases);
+    return std::nullopt;
+  };
+  add_option(std::move(name), "list of texts or integers", facts, std::move(assign),
+             [&field] { return written_phrases(field); });
+}
+
 void OptionTable::add_text_option(std::string name, OptionFacts facts, std::function<void(const std::string&)> store,
                                   std::function<std::string()> load) {
   auto assign = [facts, store = std::move(store)](const OptionValue& value) -> std::optional<std::string> {
@@ -243,6 +277,33 @@ OptionTable OptionTable::without(const std::vector<std::string>& names) const {
   for (const Option& option : options_)
     if (std::find(names.begin(), names.end(), option.name) == names.end()) rest.options_.push_back(option);
   return rest;
+}
+
+std::vector<std::string> words_of(const std::string& phrase) {
+  std::vector<std::string> words(1);
+  for (const char letter : phrase) {
+    if (letter != ' ' && letter != ',' && letter != '\t')
+      words.back() += letter;
+    else if (!words.back().empty())
+      words.emplace_back();
+  }
+  if (words.back().empty()) words.pop_back();
+  return words;
+}
+
+std::optional<int> whole_number(const std::string& text) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || text.empty()) return std::nullopt;
+  return number;
+}
+
+std::optional<double> finite_number(const std::string& text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || text.empty() || !std::isfinite(number))
+    return std::nullopt;
+  return number;
 }
 
 std::optional<std::string> likely_meant(const std::string& name, const std::vector<std::string>& known) {

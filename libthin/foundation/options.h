@@ -78,6 +78,13 @@ class OptionTable {
         });
   }
 
+  // A list of texts or whole numbers, each kept as text ("5", "mhs 3 4 5"), with a grammar of its own: `understand` is
+  // given the list and returns what is wrong with it, or nothing; `field` changes only where nothing is. One text or
+  // number alone is a list of one.
+  using Understand = std::function<std::optional<std::string>(const std::vector<std::string>&)>;
+  void add_phrases(std::string name, std::vector<std::string>& field, const OptionFacts& facts,
+                   const Understand& understand);
+
   const std::vector<Option>& options() const { return options_; }
   const Option* find(const std::string& name) const;
 
@@ -93,6 +100,13 @@ class OptionTable {
 
   std::vector<Option> options_;
 };
+
+// The words of a phrase, parted by blanks or commas.
+std::vector<std::string> words_of(const std::string& phrase);
+
+// A whole number or a number, all of the text; nothing else, and no infinity.
+std::optional<int> whole_number(const std::string& text);
+std::optional<double> finite_number(const std::string& text);
 
 // The known name most like `name`, where one is so like it that it was probably meant.
 std::optional<std::string> likely_meant(const std::string& name, const std::vector<std::string>& known);

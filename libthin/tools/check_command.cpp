@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "libthin/tools/commands.h"
+#include "libthin/tools/preparation_data.h"
 #include "libthin/tools/settings.h"
 
 namespace thin {
@@ -19,6 +20,10 @@ void add_check_command(CLI::App& program, Action& action) {
       if (!settings) {
         fmt::print(stderr, "{}\n", settings.error().message);
         return exit_code(settings.error().kind);
+      }
+      if (const Result<PreparationData> data = read_preparation_data(settings->preparation); !data) {
+        fmt::print(stderr, "{}\n", data.error().message);
+        return exit_code(data.error().kind);
       }
       for (const auto& [name, value] : settings->resolved) fmt::print("{} = {}\n", name, value);
       return 0;

@@ -12,6 +12,7 @@
 #include "libthin/tools/commands.h"
 #include "libthin/tools/evaluation_report.h"
 #include "libthin/tools/option_text.h"
+#include "libthin/tools/preparation_data.h"
 
 namespace thin {
 namespace {
@@ -47,12 +48,15 @@ Result<ObservationSet> observations_of(const Arguments& arguments, const Evaluat
                          : "name files to evaluate on, or set [synthetic] source"};
   if (made_up) return settings.synthetic.make();
   ObservationSet all;
-  for (const std::string& path : arguments.files) {
+  for (std::size_t file = 0; file < arguments.files.size(); ++file) {
+    const std::string& path = arguments.files[file];
     const Result<ReadObservations> contents = read_observations(path, settings.input);
     if (!contents) return contents.error();
     for (const SkippedPart& part : contents->skipped)
       spdlog::warn("{}: message {} at byte {}: {}", path, part.message, part.offset, part.reason);
+    const std::size_t first = all.size();
     all.append(contents->observations);
+    for (std::size_t i = first; i < all.size(); ++i) all.source[i].file = static_cast<std::uint32_t>(file);
   }
   return all;
 }
@@ -90,7 +94,10 @@ Result<int> run(const Arguments& arguments) {
   Result<ObservationSet> all = observations_of(arguments, *settings);
   if (!all) return all.error();
   if (arguments.shuffle) all = shuffled(*all, *arguments.shuffle);
-  const Result<Prepared> prepared = prepare(*all, {}, settings->preparation);
+  Result<PreparationData> data = read_preparation_data(settings->preparation);
+  if (!data) return data.error();
+  data->file_names = arguments.files;
+  const Result<Prepared> prepared = prepare(*all, {}, settings->preparation, *data);
   if (!prepared) return prepared.error();
   if (prepared->observations.size() == 0)
     return Error{ErrorKind::input, fmt::format("nothing is left to evaluate on: all {} observations were screened out; "

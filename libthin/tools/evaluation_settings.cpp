@@ -111,6 +111,8 @@ Result<EvaluationSettings> read_evaluation_settings(Configuration configuration)
   configuration.read_section("input", input);
   settings.preparation.declare(preparation);
   configuration.read_section("preparation", preparation);
+  if (const auto conflict = settings.preparation.conflict())
+    configuration.add_problem("preparation", conflict->key, conflict->problem);
   declare_run_options(run, settings.threads);
   configuration.read_section("run", run);
   for (const char* section : {"thinning", "output", "daemon", "window"}) configuration.ignore_section(section);

@@ -39,6 +39,21 @@ std::string satellites(const FileSummary& summary) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+// Counts where there are several.
+std::string instruments(const FileSummary& summary) {
+  if (summary.instruments.size() < 2) return summary.instrument;
+  std::vector<std::string> names;
+  for (const InstrumentSummary& one : summary.instruments)
+    names.push_back(fmt::format("{}: {} observations", instrument_name(one.instrument), one.observations));
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+// "7"; "MHS 3" where a file has several instruments.
+std::string channel_name(const ChannelSummary& channel) {
+  if (channel.instrument == Instrument::unknown) return std::to_string(channel.channel);
+  return fmt::format("{} {}", instrument_name(channel.instrument), channel.channel);
+}
+
 std::string skipped_lines(const FileSummary& summary) {
   std::string text;
   for (std::size_t i = 0; i < summary.skipped.size() && i < kMostSkippedLines; ++i)
@@ -49,12 +64,12 @@ std::string skipped_lines(const FileSummary& summary) {
 }
 
 std::string channel_table(const FileSummary& summary) {
-  std::string text = fmt::format("  {:>7}  {:>8}  {:>8}  {:>8}  {:>8}  {:>8}", "channel", "present", "missing", "min K",
+  std::string text = fmt::format("  {:>9}  {:>8}  {:>8}  {:>8}  {:>8}  {:>8}", "channel", "present", "missing", "min K",
                                  "mean K", "max K");
   text += summary.has_first_guess ? "  innovation: mean K  deviation K\n" : "\n";
   for (const ChannelSummary& channel : summary.channels) {
-    text += fmt::format("  {:>7}  {:>8}  {:>8}  {:>8}  {:>8}  {:>8}", channel.channel, channel.present, channel.missing,
-                        kelvin(channel.minimum_k), kelvin(channel.mean_k), kelvin(channel.maximum_k));
+    text += fmt::format("  {:>9}  {:>8}  {:>8}  {:>8}  {:>8}  {:>8}", channel_name(channel), channel.present,
+                        channel.missing, kelvin(channel.minimum_k), kelvin(channel.mean_k), kelvin(channel.maximum_k));
     if (summary.has_first_guess)
       text +=
           fmt::format("  {:>18}  {:>11}", kelvin(channel.innovation_mean_k), kelvin(channel.innovation_deviation_k));
@@ -70,7 +85,7 @@ std::string table_of(const std::string& path, const FileSummary& summary) {
   std::string text = path + "\n";
   const bool has_messages = !summary.editions.empty();
   text += line("layout", summary.layout + (has_messages ? " edition " + joined(summary.editions) : ""));
-  text += line("instrument", summary.instrument);
+  text += line("instrument", instruments(summary));
   if (has_messages)
     text += line("messages", fmt::format("{}, of which {} in use", summary.messages, summary.messages_in_use));
   text += skipped_lines(summary);
@@ -112,16 +127,22 @@ nlohmann::ordered_json json_of(const FileSummary& summary) {
     json["satellites"].push_back({{"number", platform.platform},
                                   {"name", platform_name(platform.platform)},
                                   {"observations", platform.observations}});
+  json["instruments"] = nlohmann::ordered_json::array();
+  for (const InstrumentSummary& one : summary.instruments)
+    json["instruments"].push_back({{"name", instrument_name(one.instrument)}, {"observations", one.observations}});
   json["channels"] = nlohmann::ordered_json::array();
   for (const ChannelSummary& channel : summary.channels)
-    json["channels"].push_back({{"channel", channel.channel},
-                                {"present", channel.present},
-                                {"missing", channel.missing},
-                                {"minimum_k", json_number(channel.minimum_k)},
-                                {"mean_k", json_number(channel.mean_k)},
-                                {"maximum_k", json_number(channel.maximum_k)},
-                                {"innovation_mean_k", json_number(channel.innovation_mean_k)},
-                                {"innovation_deviation_k", json_number(channel.innovation_deviation_k)}});
+    json["channels"].push_back(
+        {{"channel", channel.channel},
+         {"instrument",
+          channel.instrument == Instrument::unknown ? summary.instrument : instrument_name(channel.instrument)},
+         {"present", channel.present},
+         {"missing", channel.missing},
+         {"minimum_k", json_number(channel.minimum_k)},
+         {"mean_k", json_number(channel.mean_k)},
+         {"maximum_k", json_number(channel.maximum_k)},
+         {"innovation_mean_k", json_number(channel.innovation_mean_k)},
+         {"innovation_deviation_k", json_number(channel.innovation_deviation_k)}});
   json["notes"] = summary.notes;
   json["skipped"] = nlohmann::ordered_json::array();
   for (const SkippedPart& part : summary.skipped)

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libthin/foundation/version.h"
+#include "libthin/observations/instruments.h"
 #include "libthin/observations/platforms.h"
 #include "libthin/observations/time.h"
 
@@ -29,20 +30,85 @@ Json error_json(const EstimationError& error, const std::vector<int>& channels) 
           {"rms_k_by_channel", rms}};
 }
 
-Json platform_json(std::int32_t platform, const PlatformTally& tally, const WindowOutcome& outcome) {
+std::size_t retained_of(const WindowOutcome& outcome, const Sounder& sounder) {
+  const auto found = outcome.retained_by_sounder.find(sounder);
+  return found == outcome.retained_by_sounder.end() ? 0 : found->second;
+}
+
+// The error of one sounder; nothing where none of its observations was thinned.
+const EstimationError* error_of(const WindowOutcome& outcome, const Sounder& sounder) {
+  const auto instrument = outcome.errors.find(sounder.second);
+  if (instrument == outcome.errors.end()) return nullptr;
+  const auto platform = instrument->second.platforms.find(sounder.first);
+  return platform == instrument->second.platforms.end() ? nullptr : &platform->second;
+}
+
+// The channels of an instrument that are thinned by.
+std::vector<int> channels_of(const WindowOutcome& outcome, Instrument instrument) {
+  const ObservationSet& set = outcome.prepared.observations;
+  std::vector<int> channels;
+  for (std::size_t place = 0; place < set.channel_count(); ++place)
+    if (set.channel_instrument.empty() || set.channel_instrument[place] == instrument)
+      channels.push_back(set.channels[place]);
+  return channels;
+}
+
+Json sounder_json(const Sounder& sounder, const SounderTally& tally, const WindowOutcome& outcome,
+                  const ScreeningOptions& options) {
   Json screened = Json::object();
-  for (const auto& [reason, count] : tally.screened) screened[name_of(reason)] = count;
-  const auto retained = outcome.retained_by_platform.find(platform);
-  Json json = {{"number", platform},
-               {"name", platform_name(platform)},
-               {"observations", tally.observations},
-               {"screened", screened},
-               {"prepared", tally.prepared},
-               {"retained", retained == outcome.retained_by_platform.end() ? 0 : retained->second}};
-  const auto error = outcome.error.platforms.find(platform);
-  if (error != outcome.error.platforms.end())
-    json["estimation_error"] = error_json(error->second, outcome.prepared.observations.channels);
+  for (const auto& [reason, count] : tally.screened) screened[name_of(reason, options)] = count;
+  Json json = {{"number", sounder.first}, {"name", platform_name(sounder.first)}};
+  if (sounder.second != Instrument::unknown) json["instrument"] = instrument_name(sounder.second);
+  json["observations"] = tally.observations;
+  json["duplicates"] = {{"of_the_same_field_of_view", tally.near_duplicates}, {"exact", tally.exact_duplicates}};
+  json["screened"] = screened;
+  json["prepared"] = tally.prepared;
+  json["retained"] = retained_of(outcome, sounder);
+  if (const EstimationError* error = error_of(outcome, sounder))
+    json["estimation_error"] = error_json(*error, channels_of(outcome, sounder.second));
   return json;
+}
+
+Json thinned_error_json(const ThinnedError& error, const std::vector<int>& channels) {
+  Json json = error_json(error.whole, channels);
+  json["bandwidth_km"] = error.bandwidth_km;
+  json["gme_level"] = error.level;
+  return json;
+}
+
+// Channels and error: of the only instrument, or of each.
+void add_errors(const WindowOutcome& outcome, Json& json) {
+  if (outcome.errors.size() == 1) {
+    const auto& [instrument, error] = *outcome.errors.begin();
+    json["channels"] = channels_of(outcome, instrument);
+    json["estimation_error"] = thinned_error_json(error, channels_of(outcome, instrument));
+    return;
+  }
+  json["instruments"] = Json::array();
+  for (const auto& [instrument, error] : outcome.errors)
+    json["instruments"].push_back({{"name", instrument_name(instrument)},
+                                   {"channels", channels_of(outcome, instrument)},
+                                   {"estimation_error", thinned_error_json(error, channels_of(outcome, instrument))}});
+}
+
+Json steps_json(const Prepared& prepared) {
+  std::size_t duplicates = 0, screened = 0;
+  for (const auto& [sounder, tally] : prepared.sounders) {
+    duplicates += tally.duplicates();
+    screened += tally.screened_count();
+  }
+  return {{"outside_window", prepared.outside_window},
+          {"duplicates", duplicates},
+          {"screened", screened},
+          {"surfaces_from_mask", prepared.surfaces_filled},
+          {"bias_corrected", prepared.bias.corrected},
+          {"bias_uncorrected", prepared.bias.uncorrected},
+          {"first_guess",
+           {{"innovations_as_they_came", prepared.first_guess.innovations},
+            {"of_a_file", prepared.first_guess.given},
+            {"scan_position_mean", prepared.first_guess.scan_position_mean},
+            {"none", prepared.first_guess.none}}},
+          {"prepared", prepared.observations.size()}};
 }
 
 Json file_json(const FileOutcome& file) {
@@ -62,31 +128,49 @@ double rms_k(const EstimationError& error) {
   return channels > 0 ? std::sqrt(error.mean_squared_k2 / channels) : 0;
 }
 
-std::string table_row(const std::string& name, std::size_t observations, std::size_t screened, std::size_t retained,
+std::string table_row(const std::string& name, const SounderTally& tally, std::size_t retained,
                       const EstimationError& error) {
   const double share = error.empty_mean_squared_k2 > 0 ? error.mean_squared_k2 / error.empty_mean_squared_k2 : 0;
-  return fmt::format("{:<14} {:>12} {:>9} {:>9} {:>12.4f} {:>10.4f} {:>9.1f}\n", name, observations, screened, retained,
-                     error.mean_squared_k2, rms_k(error), 100 * share);
+  return fmt::format("{:<18} {:>12} {:>10} {:>9} {:>9} {:>12.4f} {:>10.4f} {:>9.1f}\n", name, tally.observations,
+                     tally.duplicates(), tally.screened_count(), retained, error.mean_squared_k2, rms_k(error),
+                     100 * share);
+}
+
+void add(const SounderTally& one, SounderTally& sum) {
+  sum.observations += one.observations;
+  sum.near_duplicates += one.near_duplicates;
+  sum.exact_duplicates += one.exact_duplicates;
+  sum.prepared += one.prepared;
+}
+
+// What all satellites of an instrument have together.
+std::string sum_row(const WindowOutcome& outcome, Instrument instrument, const EstimationError& error) {
+  SounderTally sum;
+  std::size_t retained = 0;
+  const bool is_only = outcome.errors.size() == 1;
+  for (const auto& [sounder, tally] : outcome.prepared.sounders) {
+    if (!is_only && sounder.second != instrument) continue;
+    add(tally, sum);
+    retained += retained_of(outcome, sounder);
+  }
+  return table_row(is_only ? "all" : fmt::format("all {}", instrument_name(instrument)), sum, retained, error);
 }
 
 }  // namespace
 
 std::string report_json(const WindowOutcome& outcome, const Settings& settings) {
-  const ObservationSet& prepared = outcome.prepared.observations;
+  const Prepared& prepared = outcome.prepared;
   Json json = {{"program", "thin"}, {"version", kVersion}};
   json["window"] = {{"begin", time_json(outcome.window.begin_ms)}, {"end", time_json(outcome.window.end_ms)}};
   for (const auto& [name, value] : settings.resolved) json["configuration"][name] = value;
-  json["observations"] = {{"outside_window", outcome.prepared.outside_window},
-                          {"prepared", prepared.size()},
-                          {"retained", outcome.retained.size()}};
-  json["channels"] = prepared.channels;
-  json["values"] = prepared.value_kind == ValueKind::innovation ? "innovations" : "brightness temperatures";
-  json["estimation_error"] = error_json(outcome.error.whole, prepared.channels);
-  json["estimation_error"]["bandwidth_km"] = outcome.error.bandwidth_km;
-  json["estimation_error"]["gme_level"] = outcome.error.level;
+  json["observations"] = steps_json(prepared);
+  json["observations"]["retained"] = outcome.retained.size();
+  json["values"] =
+      prepared.observations.value_kind == ValueKind::innovation ? "innovations" : "brightness temperatures";
+  add_errors(outcome, json);
   json["satellites"] = Json::array();
-  for (const auto& [platform, tally] : outcome.prepared.platforms)
-    json["satellites"].push_back(platform_json(platform, tally, outcome));
+  for (const auto& [sounder, tally] : prepared.sounders)
+    json["satellites"].push_back(sounder_json(sounder, tally, outcome, settings.preparation.screening));
   json["files"] = Json::array();
   for (const FileOutcome& file : outcome.files) json["files"].push_back(file_json(file));
   json["refused"] = Json::array();
@@ -97,23 +181,18 @@ std::string report_json(const WindowOutcome& outcome, const Settings& settings) 
 }
 
 std::string report_table(const WindowOutcome& outcome) {
-  std::string table = fmt::format("{:<14} {:>12} {:>9} {:>9} {:>12} {:>10} {:>9}\n", "satellite", "observations",
-                                  "screened", "retained", "E, K^2", "rms, K", "lost, %");
-  std::size_t observations = 0, prepared = 0;
-  for (const auto& [platform, tally] : outcome.prepared.platforms) {
-    observations += tally.observations;
-    prepared += tally.prepared;
-    const auto retained = outcome.retained_by_platform.find(platform);
-    const auto error = outcome.error.platforms.find(platform);
-    table += table_row(platform_name(platform), tally.observations, tally.observations - tally.prepared,
-                       retained == outcome.retained_by_platform.end() ? 0 : retained->second,
-                       error == outcome.error.platforms.end() ? EstimationError{} : error->second);
+  std::string table = fmt::format("{:<18} {:>12} {:>10} {:>9} {:>9} {:>12} {:>10} {:>9}\n", "satellite", "observations",
+                                  "duplicates", "screened", "retained", "E, K^2", "rms, K", "lost, %");
+  for (const auto& [sounder, tally] : outcome.prepared.sounders) {
+    const EstimationError* error = error_of(outcome, sounder);
+    table += table_row(sounder_name(sounder), tally, retained_of(outcome, sounder), error ? *error : EstimationError{});
   }
-  table += table_row("all", observations, observations - prepared, outcome.retained.size(), outcome.error.whole);
-  table += fmt::format(
-      "E: mean squared difference of the Gaussian estimates (h = {:g} km) from the prepared and the "
-      "retained, over channels {}; lost: its share of the E of retaining nothing\n",
-      outcome.error.bandwidth_km, fmt::join(outcome.prepared.observations.channels, " "));
+  for (const auto& [instrument, error] : outcome.errors) table += sum_row(outcome, instrument, error.whole);
+  for (const auto& [instrument, error] : outcome.errors)
+    table += fmt::format(
+        "E: mean squared difference of the Gaussian estimates (h = {:g} km) from the prepared and the "
+        "retained, over channels {}; lost: its share of the E of retaining nothing\n",
+        error.bandwidth_km, fmt::join(channels_of(outcome, instrument), " "));
   table += "seconds:";
   for (const auto& [step, seconds] : outcome.seconds) table += fmt::format("  {} {:.3f}", step, seconds);
   return table + "\n";

@@ -10,6 +10,7 @@
 #include "libthin/foundation/parallel.h"
 #include "libthin/observations/time.h"
 #include "libthin/tools/commands.h"
+#include "libthin/tools/explanation.h"
 #include "libthin/tools/outcome.h"
 #include "libthin/tools/report.h"
 
@@ -22,6 +23,7 @@ struct Arguments {
   std::string configuration, output, begin, end;
   std::vector<std::string> files;
   bool as_json = false;
+  bool explain = false;
 };
 
 Result<TimeWindow> window_of(const Arguments& arguments) {
@@ -81,9 +83,10 @@ Result<Inputs> read_inputs(const std::vector<std::string>& paths, const InputOpt
   return inputs;
 }
 
-void print(const WindowOutcome& outcome, const Settings& settings, bool as_json) {
+void print(const WindowOutcome& outcome, const Settings& settings, const Arguments& arguments) {
   for (const std::string& note : outcome.prepared.notes) spdlog::warn("{}", note);
-  if (!as_json) {
+  if (!arguments.as_json) {
+    if (arguments.explain) fmt::print("{}\n", explanation(outcome, settings));
     fmt::print("{}", report_table(outcome));
     return;
   }
@@ -113,7 +116,7 @@ Result<int> run(const Arguments& arguments) {
       thin_window(std::move(inputs->files), std::move(inputs->refused), *window, *settings, arguments.output);
   if (!outcome) return outcome.error();
   outcome->seconds.insert(outcome->seconds.begin(), seconds.begin(), seconds.end());
-  print(*outcome, *settings, arguments.as_json);
+  print(*outcome, *settings, arguments);
   return some_refused ? exit_code(ErrorKind::input) : 0;
 }
 
@@ -127,6 +130,10 @@ void add_run_command(CLI::App& program, Action& action) {
   command->add_option("--begin", arguments->begin, "observations from this time on, 2004-07-21T22:30:00Z");
   command->add_option("--end", arguments->end, "observations before this time");
   command->add_flag("--json", arguments->as_json, "print the report and the seconds per step as JSON");
+  command
+      ->add_flag("--explain", arguments->explain,
+                 "print the resolved way, step by step, with what each step left out; the outputs are the same")
+      ->excludes("--json");
   command->add_option("files", arguments->files, "files of soundings")->required();
   command->callback([arguments, &action] {
     action = [arguments] {

@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <filesystem>
+
+#include "libthin/tools/preparation_data.h"
+
 namespace thin {
 namespace {
 
@@ -42,7 +46,11 @@ void declare_run_options(OptionTable& table, int& threads) {
 Result<Settings> read_settings(const std::string& path) {
   Result<Configuration> configuration = Configuration::read(path);
   if (!configuration) return configuration.error();
-  return read_settings(std::move(*configuration));
+  Result<Settings> settings = read_settings(std::move(*configuration));
+  std::error_code ignored;
+  const std::filesystem::path absolute = std::filesystem::absolute(path, ignored);
+  if (settings) make_paths_absolute(settings->preparation, absolute.parent_path().string());
+  return settings;
 }
 
 Result<Settings> read_settings(Configuration configuration) {
@@ -62,6 +70,8 @@ Result<Settings> read_settings(Configuration configuration) {
   configuration.read_section("input", input);
   settings.preparation.declare(preparation);
   configuration.read_section("preparation", preparation);
+  if (const auto conflict = settings.preparation.conflict())
+    configuration.add_problem("preparation", conflict->key, conflict->problem);
   settings.output.declare(output);
   configuration.read_section("output", output);
   declare_run_options(run, settings.threads);

@@ -24,7 +24,8 @@ struct Settings {
   std::vector<std::pair<std::string, std::string>> resolved;
 };
 
-// Error: configuration, with a line for every problem in the file.
+// Error: configuration, with a line for every problem in the file. Relative paths in [preparation] start at the
+// configuration's folder; `resolved` has them as they are written, for reports must not depend on where that lies.
 Result<Settings> read_settings(const std::string& path);
 Result<Settings> read_settings(Configuration configuration);
 

@@ -1,4 +1,5 @@
-// `thin synth`: synthetic AMSU-A soundings on realistic orbits as BUFR files, delivered as a receiving station would.
+// `thin synth`: synthetic AMSU-A soundings on realistic orbits as files of BUFR or CF, delivered as a receiving station
+// would.
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <set>
 #include <string>
 #include <thread>
@@ -17,6 +19,7 @@
 
 #include "libthin/analysis/synthetic_atmosphere.h"
 #include "libthin/formats/bufr_amsua_writer.h"
+#include "libthin/formats/cf_writer.h"
 #include "libthin/foundation/options.h"
 #include "libthin/foundation/parallel.h"
 #include "libthin/observations/orbit.h"
@@ -41,6 +44,7 @@ struct SynthArguments {
   int lines_per_message = 10;
   std::vector<std::string> dead_channels;
   bool gts = false;
+  std::string format = "bufr";
   int deliver_delay_ms = 0;
 };
 
@@ -56,6 +60,7 @@ struct SynthPlan {
   std::int64_t begin_ms = 0;
   MeasurementOptions measurement;
   AmsuaWriterOptions writer;
+  bool as_cf = false;
 };
 
 struct FileTotals {
@@ -113,6 +118,7 @@ Result<SynthPlan> understand(const SynthArguments& arguments) {
   }
   plan.measurement = {.noise = arguments.noise, .climatology = arguments.climatology};
   plan.writer = {.lines_per_message = arguments.lines_per_message, .gts_envelopes = arguments.gts};
+  plan.as_cf = arguments.format == "cf";
   return plan;
 }
 
@@ -122,7 +128,7 @@ std::string file_name(std::int32_t platform, std::int64_t begin_ms) {
   for (const char letter : platform_name(platform))
     if (std::isalnum(static_cast<unsigned char>(letter)))
       satellite += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  return fmt::format("amsua_{}_{}.bufr", satellite, to_compact_iso8601(begin_ms));
+  return fmt::format("amsua_{}_{}", satellite, to_compact_iso8601(begin_ms));
 }
 
 // Lines begin at whole multiples of 8 s, whatever the files' limits, so that files cut differently hold the same lines.
@@ -157,6 +163,38 @@ std::vector<AmsuaSounding> sound(const SyntheticAtmosphere& atmosphere, const Or
   return soundings;
 }
 
+ObservationSet observations_of(const std::vector<AmsuaSounding>& soundings, std::int32_t platform) {
+  ObservationSet set;
+  set.channels.resize(kAmsuaChannels);
+  std::iota(set.channels.begin(), set.channels.end(), 1);
+  std::vector<double> satellite_zenith_deg, solar_zenith_deg;
+  for (const AmsuaSounding& sounding : soundings) {
+    ObservationSet::Entry entry;
+    entry.latitude_deg = sounding.view.latitude_deg;
+    entry.longitude_deg = sounding.view.longitude_deg;
+    entry.time_ms = sounding.view.time_ms;
+    entry.platform = platform;
+    entry.instrument = Instrument::amsua;
+    entry.scan_line = sounding.scan_line;
+    entry.field_of_view = sounding.field_of_view;
+    set.push_back(entry, sounding.brightness_temperature_k);
+    satellite_zenith_deg.push_back(sounding.view.satellite_zenith_deg);
+    solar_zenith_deg.push_back(sounding.view.solar_zenith_deg);
+  }
+  set.variables = {{"satellite_zenith_angle_deg", std::move(satellite_zenith_deg)},
+                   {"solar_zenith_angle_deg", std::move(solar_zenith_deg)}};
+  return set;
+}
+
+// One file in the format of the plan; CF has no messages, but is one.
+Result<AmsuaFileSummary> write_soundings(const std::string& path, std::int32_t platform,
+                                         const std::vector<AmsuaSounding>& soundings, const SynthPlan& plan) {
+  if (!plan.as_cf) return write_amsua_file(path, platform, soundings, plan.writer);
+  const Result<std::uint64_t> bytes = write_cf_file(path, observations_of(soundings, platform));
+  if (!bytes) return bytes.error();
+  return AmsuaFileSummary{1, *bytes};
+}
+
 Result<void> write_file(const std::filesystem::path& folder, const SyntheticAtmosphere& atmosphere, const Orbit& orbit,
                         const SynthPlan& plan, std::int64_t begin_ms, std::int64_t end_ms, FileTotals& totals) {
   std::vector<AmsuaSounding> soundings = sound(atmosphere, orbit, plan, begin_ms, end_ms);
@@ -167,8 +205,8 @@ Result<void> write_file(const std::filesystem::path& folder, const SyntheticAtmo
         sounding.brightness_temperature_k[static_cast<std::size_t>(dead.channel - 1)] =
             std::numeric_limits<double>::quiet_NaN();
 
-  const std::string name = file_name(orbit.platform(), begin_ms);
-  const auto summary = write_amsua_file((folder / name).string(), orbit.platform(), soundings, plan.writer);
+  const std::string name = file_name(orbit.platform(), begin_ms) + (plan.as_cf ? ".nc" : ".bufr");
+  const auto summary = write_soundings((folder / name).string(), orbit.platform(), soundings, plan);
   if (!summary) return summary.error();
   fmt::print("{:<42} {:>12} {:>8}  {:<24}  {:<24}\n", name, soundings.size(), summary->messages,
              to_iso8601(soundings.front().view.time_ms), to_iso8601(soundings.back().view.time_ms));
@@ -222,7 +260,7 @@ int synthesise(const SynthArguments& arguments) {
 
 void add_synth_command(CLI::App& program, Action& action) {
   CLI::App* command =
-      program.add_subcommand("synth", "realistic AMSU-A soundings as BUFR files, deterministic by seed");
+      program.add_subcommand("synth", "realistic AMSU-A soundings as BUFR or CF files, deterministic by seed");
   const auto arguments = std::make_shared<SynthArguments>();
   command->add_option("-o,--output", arguments->output_folder, "Folder to write to; made where it does not exist")
       ->required();
@@ -245,6 +283,9 @@ void add_synth_command(CLI::App& program, Action& action) {
       ->capture_default_str();
   command->add_option("--dead-channel", arguments->dead_channels,
                       "SATELLITE:CHANNEL whose values are missing, as NOAA-16:4; may be given several times");
+  command->add_option("--format", arguments->format, "bufr, or cf: netCDF as docs/formats.md describes it")
+      ->check(CLI::IsMember({"bufr", "cf"}))
+      ->capture_default_str();
   command->add_flag("--gts", arguments->gts, "Put each message into a GTS bulletin");
   command->add_option("--deliver-delay-ms", arguments->deliver_delay_ms, "Pause between files")
       ->check(CLI::Range(0, 3'600'000))

@@ -6,6 +6,8 @@
 #include <cassert>
 
 #include "libthin/formats/atomic_file.h"
+#include "libthin/tools/instrument_parts.h"
+#include "libthin/tools/preparation_data.h"
 #include "libthin/tools/report.h"
 
 namespace thin {
@@ -25,13 +27,48 @@ ObservationSet merged(const std::vector<WindowFile>& files) {
   return all;
 }
 
-Error nothing_left(const Prepared& prepared, const ObservationSet& all) {
-  std::size_t screened = 0;
-  for (const auto& [platform, tally] : prepared.platforms) screened += tally.observations - tally.prepared;
-  return {ErrorKind::input,
-          fmt::format("nothing is left to thin: of {} observations {} lie outside the window and {} were "
-                      "screened out; see [preparation] for the channels and limits",
-                      all.size(), prepared.outside_window, screened)};
+Error nothing_left(const Prepared& prepared, const ObservationSet& all, const ScreeningOptions& options) {
+  std::size_t duplicates = 0, screened = 0;
+  std::map<ScreeningReason, std::size_t> reasons;
+  for (const auto& [sounder, tally] : prepared.sounders) {
+    duplicates += tally.duplicates();
+    screened += tally.screened_count();
+    for (const auto& [reason, count] : tally.screened) reasons[reason] += count;
+  }
+  std::string why;
+  for (const auto& [reason, count] : reasons)
+    why += fmt::format("{}{} {}", why.empty() ? " (" : ", ", count, name_of(reason, options));
+  return {
+      ErrorKind::input,
+      fmt::format("nothing is left to thin: of {} observations {} lie outside the window, {} are duplicates, and {} "
+                  "were screened out{}; see [preparation] for the channels, limits and rules",
+                  all.size(), prepared.outside_window, duplicates, screened, why.empty() ? "" : why + ")")};
+}
+
+Result<Prepared> prepare_files(const std::vector<WindowFile>& files, const ObservationSet& all,
+                               const TimeWindow& window, const Settings& settings) {
+  const PreparationOptions& options = settings.preparation;
+  Result<PreparationData> data = read_preparation_data(options);
+  if (!data) return data.error();
+  Result<std::optional<ObservationSet>> companions = read_companions(options, settings.input);
+  if (!companions) return companions.error();
+  data->companions = std::move(*companions);
+  for (const WindowFile& file : files) data->file_names.push_back(file.name);
+  return prepare(all, window, options, *data);
+}
+
+Result<void> evaluate_each_instrument(double bandwidth_km, WindowOutcome& outcome) {
+  return each_instrument(
+      outcome.prepared.observations,
+      [&](Instrument instrument, const ObservationSet& part, std::span<const std::uint32_t> members) -> Result<void> {
+        Retained retained;
+        for (std::uint32_t i = 0; i < members.size(); ++i)
+          if (std::binary_search(outcome.retained.begin(), outcome.retained.end(), members[i])) retained.push_back(i);
+        Result<ThinnedError> error = thinned_error(part, retained, bandwidth_km);
+        if (!error) return error.error();
+        outcome.errors.emplace(instrument, std::move(*error));
+        return {};
+      });
 }
 
 // Messages of other kinds leave with the window that holds the file's earliest observation, so that a file which spans
@@ -45,6 +82,9 @@ Result<FileOutcome> write_file(const WindowFile& file, const std::vector<SourceR
                                const TimeWindow& window, OutputOptions options, const std::string& directory) {
   FileOutcome outcome;
   outcome.name = file.name;
+  outcome.layout = file.contents.layout;
+  outcome.instrument = file.contents.instrument;
+  outcome.read = file.contents.observations.size();
   outcome.retained = retained.size();
   outcome.skipped = file.contents.skipped;
   outcome.notes = file.contents.notes;
@@ -52,7 +92,9 @@ Result<FileOutcome> write_file(const WindowFile& file, const std::vector<SourceR
   outcome.observations =
       static_cast<std::size_t>(std::count_if(observations.time_ms.begin(), observations.time_ms.end(),
                                              [&](std::int64_t time_ms) { return window.holds(time_ms); }));
-  if (retained.empty()) return outcome;
+  // With flags, a file of which nothing is retained goes out with all of it flagged.
+  const bool all_flagged = options.mode == OutputOptions::Mode::flag && outcome.observations > 0;
+  if (retained.empty() && !all_flagged) return outcome;
   if (!carries_other_messages(observations, window)) options.other_messages = OutputOptions::OtherMessages::drop;
 
   const std::string path = directory + "/" + file.name;
@@ -94,24 +136,23 @@ Result<WindowOutcome> thin_window(std::vector<WindowFile> files, std::vector<Ref
   StepClock clock(outcome.seconds);
 
   const ObservationSet all = merged(files);
-  Result<Prepared> prepared = prepare(all, window, settings.preparation);
+  Result<Prepared> prepared = prepare_files(files, all, window, settings);
   if (!prepared) return prepared.error();
   outcome.prepared = std::move(*prepared);
-  const ObservationSet& observations = outcome.prepared.observations;
-  if (observations.size() == 0) return nothing_left(outcome.prepared, all);
+  if (outcome.prepared.observations.size() == 0)
+    return nothing_left(outcome.prepared, all, settings.preparation.screening);
   clock.finish("prepare");
 
-  Result<Choice> choice = settings.thinner->thin(observations);
+  Result<Choice> choice = settings.thinner->thin(outcome.prepared.observations);
   if (!choice) return choice.error();
   outcome.retained = std::move(choice->retained);
   for (std::string& note : choice->notes) outcome.prepared.notes.push_back(std::move(note));
-  for (const std::uint32_t i : outcome.retained) ++outcome.retained_by_platform[observations.platform[i]];
+  for (const std::uint32_t i : outcome.retained)
+    ++outcome.retained_by_sounder[sounder_of(outcome.prepared.observations, i)];
   clock.finish("thin");
 
-  Result<ThinnedError> error =
-      thinned_error(observations, outcome.retained, choice->bandwidth_km.value_or(kReportBandwidthKm));
-  if (!error) return error.error();
-  outcome.error = std::move(*error);
+  const double bandwidth_km = choice->bandwidth_km.value_or(kReportBandwidthKm);
+  if (Result<void> evaluated = evaluate_each_instrument(bandwidth_km, outcome); !evaluated) return evaluated.error();
   clock.finish("evaluate");
 
   if (Result<void> written = write_outputs(files, settings, output_directory, outcome); !written)

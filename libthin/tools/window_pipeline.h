@@ -1,7 +1,8 @@
 #pragma once
 
 // The way of one window from decoded files to thinned files, the same for `thin run` and for the daemon's worker:
-// merge, window, screening, first guess, thinning, report, extraction from the original files.
+// merge, preparation (window, duplicates, screening, bias, first guess), thinning, report, extraction from the original
+// files.
 
 #include <map>
 #include <string>
@@ -28,6 +29,9 @@ struct RefusedFile {
 
 struct FileOutcome {
   std::string name;
+  std::string layout;
+  std::string instrument;
+  std::size_t read = 0;          // all of it
   std::size_t observations = 0;  // in the window
   std::size_t retained = 0;
   ExtractionSummary output;  // messages = 0: no file was written
@@ -41,14 +45,15 @@ struct WindowOutcome {
   std::vector<RefusedFile> refused;  // by name
   Prepared prepared;
   Retained retained;  // indices into prepared.observations
-  std::map<std::int32_t, std::size_t> retained_by_platform;
-  ThinnedError error;
+  std::map<Sounder, std::size_t> retained_by_sounder;
+  std::map<Instrument, ThinnedError> errors;
   StepSeconds seconds;  // never part of the report
 };
 
 // Writes <output_directory>/<name> for each file of which something is retained, then report.json; each whole or not
-// at all. The outputs depend on the files, the window and the settings alone: not on the order of the files.
-// Errors: input, where nothing is left to thin; those of prepare(), the method and extract_observations().
+// at all. The outputs depend on the files, those that the settings name, the window and the settings alone: not on the
+// order of the files. Errors: input, where nothing is left to thin; those of reading what the settings name, of
+// prepare(), the method and extract_observations().
 Result<WindowOutcome> thin_window(std::vector<WindowFile> files, std::vector<RefusedFile> refused,
                                   const TimeWindow& window, const Settings& settings,
                                   const std::string& output_directory);

@@ -71,13 +71,16 @@ void extract_file(benchmark::State& state, const std::string& path) {
 }
 
 void register_real_files() {
-  const std::filesystem::path folder = test::shared_data() / "observations" / "amsua";
-  if (!std::filesystem::exists(folder)) return;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string path = entry.path().string();
-    const std::string name = entry.path().filename().string();
-    benchmark::RegisterBenchmark(("read/" + name).c_str(), read_file, path)->UseManualTime();
-    benchmark::RegisterBenchmark(("extract/" + name).c_str(), extract_file, path)->UseManualTime();
+  for (const char* folder : {"amsua", "sounders"}) {
+    const std::filesystem::path path = test::shared_data() / "observations" / folder;
+    if (!std::filesystem::exists(path)) continue;
+    for (const auto& entry : std::filesystem::directory_iterator(path)) {
+      const std::string file = entry.path().string();
+      const std::string name = entry.path().filename().string();
+      if (!read_observations(file).ok()) continue;
+      benchmark::RegisterBenchmark(("read/" + name).c_str(), read_file, file)->UseManualTime();
+      benchmark::RegisterBenchmark(("extract/" + name).c_str(), extract_file, file)->UseManualTime();
+    }
   }
 }
 

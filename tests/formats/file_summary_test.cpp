@@ -21,7 +21,7 @@ TEST(FileSummary, CountsMessagesSubsetsAndChannels) {
   soundings[1].slots[0].second = 300;
   soundings[2].latitude_deg = test::kMissingValue;
   std::vector<TestSounding> other = test::test_soundings(2);
-  for (TestSounding& s : other) s.sensor = 0;
+  for (TestSounding& s : other) s.sensor = 5;
   std::vector<TestSounding> second = test::test_soundings(1);
   second[0].platform = 223;
   second[0].slots[6].second = test::kMissingValue;

@@ -151,5 +151,35 @@ TEST(Options, ATableWithoutSomeLeavesTheRestOfTheSameFields) {
   EXPECT_EQ(sample.count, 7);
 }
 
+TEST(Options, PhrasesHaveAGrammarOfTheirOwn) {
+  std::vector<std::string> phrases = {"3"};
+  OptionTable table;
+  table.add_phrases("edges", phrases, {}, [](const std::vector<std::string>& list) -> std::optional<std::string> {
+    return list.size() > 2 ? std::optional<std::string>("is too long") : std::nullopt;
+  });
+  const auto read = [&](const std::string& text) {
+    auto file = Configuration::parse("[sample]\nedges = " + text + "\n", "c.toml");
+    file->read_section("sample", table);
+    const Result<void> good = file->finish();
+    return good ? table.find("edges")->current_value() : good.error().message;
+  };
+  EXPECT_EQ(read("5"), "[5]");
+  EXPECT_EQ(read("\"mhs 9\""), "[\"mhs 9\"]");
+  EXPECT_EQ(read("[1, 2]"), "[1, 2]");
+  EXPECT_EQ(read("[\"1\", \"mhs 9\"]"), "[1, \"mhs 9\"]");
+  EXPECT_EQ(read("[1, 2, 3]"), "c.toml:2:9: sample.edges is too long");
+  EXPECT_EQ(read("[1.5]"), "c.toml:2:9: sample.edges must be a list of texts or integers, not a list of numbers");
+  EXPECT_EQ(phrases, (std::vector<std::string>{"1", "mhs 9"})) << "what was good last";
+}
+
+TEST(Options, TextsAreTakenApartWhole) {
+  EXPECT_EQ(words_of("  amsua 5, 6\t7 "), (std::vector<std::string>{"amsua", "5", "6", "7"}));
+  EXPECT_TRUE(words_of(" , ").empty());
+  EXPECT_EQ(whole_number("-12"), -12);
+  EXPECT_EQ(finite_number("1.5e-3"), 1.5e-3);
+  for (const char* text : {"", "1x", " 1", "x"}) EXPECT_FALSE(whole_number(text)) << text;
+  for (const char* text : {"", "1.5K", "inf", "nan"}) EXPECT_FALSE(finite_number(text)) << text;
+}
+
 }  // namespace
 }  // namespace thin

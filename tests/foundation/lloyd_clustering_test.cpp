@@ -77,6 +77,14 @@ TEST(SplitClusters, StopsWhereNoErrorExceedsTheBound) {
     }
 }
 
+TEST(SplitClusters, TakesEqualPointsForOneWhateverTheirCentroidRoundsTo) {
+  std::vector<double> coordinates;
+  for (int i = 0; i < 7; ++i) coordinates.insert(coordinates.end(), {6378.137 / 3, 0.1, 1e3 / 7, 100.0 / 3});
+  const ClusterPoints points{.coordinates = coordinates, .dimension = 4};
+  EXPECT_EQ(split_clusters(points, {.cluster_count = 7, .cluster_error = 0}).size(), 1U);
+  EXPECT_EQ(split_clusters(points, {.cluster_count = 7}).size(), 7U);
+}
+
 TEST(RelaxClusters, IsEveryRoundWhatTryingAllGives) {
   for (const int dimension : {3, 8, 19})
     for (const auto& cloud : test::awkward_clouds(180, dimension, 4)) {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <random>
 
+#include "tests/support/netcdf_files.h"
 #include "tests/support/shared_data.h"
 #include "tests/support/thind_site.h"
 
@@ -221,6 +222,40 @@ TEST_F(ThindAndThinTest, RealFilesAndDamagedOnes) {
     if (name.ends_with(".reason.json")) {
       EXPECT_FALSE(nlohmann::json::parse(content)["reason"].get<std::string>().empty());
     }
+}
+
+// Files of netCDF's layouts, in one inbox with one that is cut and one that holds no soundings.
+TEST_F(ThindAndThinTest, NetcdfGoesTheSameWay) {
+  const TemporaryFolder made;
+  const auto path = [&](const char* name) { return (made.path() / name).string(); };
+  write_ioda(path("amsua_n19.nc4"), {.locations = 200});
+  write_gsi(path("diag_amsua_n19_ges.nc4"), 200);
+  write_feedback(path("fofRAD.nc"), {.reports = 200});
+  write_foreign_cf(path("mhs.nc"), 200);
+  site_.window["mode"] = "\"per_file\"";
+  site_.rest = "[thinning]\nmethod = \"box\"\nhorizontal_mesh = 400\n[preparation]\nchannels = [1, 2]\n";
+  Process daemon = site_.start();
+  for (const char* name : {"amsua_n19.nc4", "diag_amsua_n19_ges.nc4", "fofRAD.nc", "mhs.nc"})
+    site_.deliver(name, content_of(path(name)));
+  write_ioda(path("empty.nc4"), {.locations = 3, .temperatures = false});
+  site_.deliver("empty.nc4", content_of(path("empty.nc4")));
+  ASSERT_TRUE(wait_until([&] { return site_.published() == 4 && site_.quarantined() == 1; }));
+  for (const char* name : {"amsua_n19.nc4", "diag_amsua_n19_ges.nc4", "fofRAD.nc", "mhs.nc"}) {
+    SCOPED_TRACE(name);
+    const int all = observations_in(path(name)), retained = observations_in(site_.path(std::string("outbox/") + name));
+    EXPECT_GT(retained, 0);
+    EXPECT_LT(retained, all);
+  }
+  const std::string report = content_of(site_.path("outbox/reports/fofRAD.nc.json"));
+  EXPECT_NE(report.find("innovations: obs - veri_data"), std::string::npos) << report;
+
+  // One that is still on its way is given back, and taken when its end has come.
+  write_ioda(path("late.nc4"), {.locations = 150});
+  const std::string late = content_of(path("late.nc4"));
+  write_content(site_.path("inbox/late.nc4"), late.substr(0, late.size() * 2 / 3));
+  ASSERT_TRUE(wait_until([&] { return site_.log_says("late.nc4 is incomplete") && there("inbox/late.nc4"); }));
+  std::ofstream(site_.path("inbox/late.nc4"), std::ios::app | std::ios::binary) << late.substr(late.size() * 2 / 3);
+  EXPECT_TRUE(wait_until([&] { return site_.published() == 5 && site_.consistent(); }));
 }
 
 TEST_F(ThindAndThinTest, TheExampleConfigurationIsGood) {

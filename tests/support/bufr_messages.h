@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -134,6 +135,9 @@ inline ByteVector make_message(const std::vector<TestSounding>& soundings, const
   set("dataCategory", 3);
   set("numberOfSubsets", static_cast<long>(soundings.size()));
   set("compressedData", shape.compressed ? 1 : 0);
+  const long new_reference = -700;
+  if (std::any_of(shape.descriptors.begin(), shape.descriptors.end(), [](long d) { return d / 1000 == 203; }))
+    codes_set_long_array(handle, "inputOverriddenReferenceValues", &new_reference, 1);
   bufr_detail::expect_done(
       codes_set_long_array(handle, "unexpandedDescriptors", shape.descriptors.data(), shape.descriptors.size()),
       "unexpandedDescriptors");

@@ -6,15 +6,16 @@
 #include <eccodes.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "libthin/observations/observation_set.h"
 #include "libthin/observations/time.h"
 
 namespace thin::test {
@@ -118,14 +119,6 @@ inline std::vector<OracleMessage> decode_file_slowly(const std::filesystem::path
   return messages;
 }
 
-// One field of view of AMSU-A, by its keys.
-struct OracleSounding {
-  double latitude_deg = 0, longitude_deg = 0;
-  std::int64_t time_ms = 0;
-  int platform = 0, scan_line = 0, field_of_view = 0;
-  std::array<double, 15> temperature_k{};  // NaN for missing
-};
-
 inline double oracle_number(const OracleMessage& message, const std::string& key, std::size_t subset) {
   const auto found = message.data.find(key);
   if (found == message.data.end()) return std::numeric_limits<double>::quiet_NaN();
@@ -133,7 +126,100 @@ inline double oracle_number(const OracleMessage& message, const std::string& key
   return value == CODES_MISSING_DOUBLE ? std::numeric_limits<double>::quiet_NaN() : value;
 }
 
-inline OracleSounding oracle_sounding(const OracleMessage& message, std::size_t subset) {
+// A compressed message for those that are too long to be kept as text: the array of a key when it is asked for.
+class KeyedMessage {
+ public:
+  // Takes the handle over.
+  explicit KeyedMessage(codes_handle* handle) : handle_(handle, &codes_handle_delete) {
+    EXPECT_EQ(codes_set_long(handle, "skipExtraKeyAttributes", 1), CODES_SUCCESS);
+    EXPECT_EQ(codes_set_long(handle, "unpack", 1), CODES_SUCCESS);
+    long subsets = 0, compressed = 0;
+    codes_get_long(handle, "numberOfSubsets", &subsets);
+    codes_get_long(handle, "compressedData", &compressed);
+    EXPECT_TRUE(compressed || subsets == 0);
+    subset_count = static_cast<std::size_t>(subsets);
+  }
+
+  // One value, or one for each subset; none where there is no such key.
+  const std::vector<double>& values(const std::string& key) const {
+    const auto [found, is_new] = columns_.try_emplace(key);
+    std::size_t count = 0;
+    if (is_new && codes_get_size(handle_.get(), key.c_str(), &count) == CODES_SUCCESS) {
+      found->second.resize(count);
+      EXPECT_EQ(codes_get_double_array(handle_.get(), key.c_str(), found->second.data(), &count), CODES_SUCCESS) << key;
+    }
+    return found->second;
+  }
+
+  std::vector<std::string> data_keys() const {
+    std::vector<std::string> keys;
+    for (const std::string& key : all_keys(handle_.get()))
+      if (key[0] == '#' && key.find("->") == std::string::npos) keys.push_back(key);
+    return keys;
+  }
+
+  std::size_t subset_count = 0;
+
+ private:
+  std::unique_ptr<codes_handle, int (*)(codes_handle*)> handle_;
+  mutable std::map<std::string, std::vector<double>> columns_;
+};
+
+inline double oracle_number(const KeyedMessage& message, const std::string& key, std::size_t subset) {
+  const std::vector<double>& values = message.values(key);
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const double value = values.size() == 1 ? values[0] : values.at(subset);
+  return value == CODES_MISSING_DOUBLE ? std::numeric_limits<double>::quiet_NaN() : value;
+}
+
+// Every message with subsets of soundings (not NCEP's tables) that ecCodes finds and opens.
+template <class Use>
+void for_each_keyed_message(const std::filesystem::path& path, const Use& use) {
+  std::FILE* file = std::fopen(path.c_str(), "rb");
+  ASSERT_TRUE(file) << path;
+  int code = 0;
+  std::uint32_t number = 0;
+  while (codes_handle* handle = codes_bufr_handle_new_from_file(nullptr, file, &code)) {
+    long category = 0;
+    codes_get_long(handle, "dataCategory", &category);
+    if (category == 11)
+      codes_handle_delete(handle);
+    else
+      use(number, KeyedMessage(handle));
+    ++number;
+  }
+  std::fclose(file);
+}
+
+// One field of view, by its keys.
+struct OracleSounding {
+  Instrument instrument = Instrument::unknown;
+  double latitude_deg = 0, longitude_deg = 0;
+  std::int64_t time_ms = 0;
+  int platform = 0, scan_line = 0, field_of_view = 0;
+  double satellite_zenith_deg = 0, solar_zenith_deg = 0;
+  std::map<int, double> temperature_k;  // by channel; those that are missing are not in it
+};
+
+// Instrument, number of channels, and the code of channel 1 in tovsOrAtovsOrAvhrrInstrumentationChannelNumber.
+struct OracleInstrument {
+  Instrument instrument = Instrument::unknown;
+  int channels = 0;
+  int first_code = 0;
+};
+
+inline OracleInstrument oracle_instrument(double sensor, double satellite_instrument) {
+  if (sensor == 3 || satellite_instrument == 570) return {Instrument::amsua, 15, 28};
+  if (sensor == 4 || satellite_instrument == 574) return {Instrument::amsub, 5, 43};
+  if (sensor == 11 || satellite_instrument == 203) return {Instrument::mhs, 5, 43};
+  if (sensor == 0 || (satellite_instrument >= 605 && satellite_instrument <= 607)) return {Instrument::hirs, 19, 1};
+  if (satellite_instrument == 621) return {Instrument::atms, 22, 0};
+  return {};
+}
+
+template <class Message>
+OracleSounding oracle_sounding(const Message& message, std::size_t subset,
+                               const std::string& temperature_key = "brightnessTemperature") {
   const auto number = [&](const std::string& name) { return oracle_number(message, "#1#" + name, subset); };
   const auto whole = [&](const std::string& name) {
     return std::isnan(number(name)) ? -1 : static_cast<int>(number(name));
@@ -148,14 +234,22 @@ inline OracleSounding oracle_sounding(const OracleMessage& message, std::size_t 
   sounding.platform = whole("satelliteIdentifier");
   sounding.scan_line = whole("scanLineNumber");
   sounding.field_of_view = whole("fieldOfViewNumber");
-  sounding.temperature_k.fill(std::numeric_limits<double>::quiet_NaN());
-  for (int slot = 20; slot >= 1; --slot) {
+  sounding.satellite_zenith_deg = number("satelliteZenithAngle");
+  sounding.solar_zenith_deg = number("solarZenithAngle");
+  double sensor = number("satelliteSensorIndicator");
+  // Where nothing names the instrument, the channels do.
+  const double first_code = number("tovsOrAtovsOrAvhrrInstrumentationChannelNumber");
+  if (std::isnan(sensor) && first_code >= 28 && first_code <= 42) sensor = 3;
+  const OracleInstrument instrument = oracle_instrument(sensor, number("satelliteInstruments"));
+  sounding.instrument = instrument.instrument;
+  for (int slot = 22; slot >= 1; --slot) {
     const std::string rank = "#" + std::to_string(slot) + "#";
     const double code = oracle_number(message, rank + "tovsOrAtovsOrAvhrrInstrumentationChannelNumber", subset);
-    const double temperature_k = oracle_number(message, rank + "brightnessTemperature", subset);
-    for (int channel = 1; channel <= 15; ++channel)
-      if (code == 27 + channel && !std::isnan(temperature_k))
-        sounding.temperature_k[static_cast<std::size_t>(channel - 1)] = temperature_k;
+    const double plain = oracle_number(message, rank + "channelNumber", subset);
+    const double channel = std::isnan(code) ? plain : code - instrument.first_code + 1;
+    const double temperature_k = oracle_number(message, rank + temperature_key, subset);
+    if (channel >= 1 && channel <= instrument.channels && !std::isnan(temperature_k))
+      sounding.temperature_k[static_cast<int>(channel)] = temperature_k;
   }
   return sounding;
 }

@@ -85,4 +85,35 @@ inline void expect_extractions_keep_everything(const std::string& path, unsigned
   }
 }
 
+// The same for one selection of a file of compressed messages that are too long to be kept as text. Messages of tables
+// stand where they stood.
+inline void expect_extraction_keeps_values(const std::string& path, const std::vector<SourceReference>& retained) {
+  const ScratchFolder folder;
+  const auto summary = extract_observations(path, retained, folder.path("out"), {});
+  ASSERT_TRUE(summary.ok()) << summary.error().message;
+  EXPECT_EQ(summary->subsets, retained.size());
+  std::map<std::uint32_t, std::vector<std::uint32_t>> by_message;
+  for (const SourceReference& reference : retained) by_message[reference.message].push_back(reference.subset);
+
+  std::vector<KeyedMessage> extracted;
+  for_each_keyed_message(folder.path("out"),
+                         [&](std::uint32_t, KeyedMessage message) { extracted.push_back(std::move(message)); });
+  ASSERT_EQ(extracted.size(), by_message.size());
+  std::size_t place = 0;
+  for_each_keyed_message(path, [&](std::uint32_t number, const KeyedMessage& original) {
+    const auto found = by_message.find(number);
+    if (found == by_message.end()) return;
+    const KeyedMessage& kept = extracted[place++];
+    const std::vector<std::string> keys = original.data_keys();
+    ASSERT_EQ(kept.data_keys(), keys);
+    ASSERT_EQ(kept.subset_count, found->second.size());
+    const auto value = [](const std::vector<double>& values, std::size_t i) {
+      return values.size() == 1 ? values[0] : values.at(i);
+    };
+    for (const std::string& key : keys)
+      for (std::size_t i = 0; i < found->second.size(); ++i)
+        ASSERT_EQ(value(kept.values(key), i), value(original.values(key), found->second[i])) << key << " " << number;
+  });
+}
+
 }  // namespace thin::test

@@ -47,6 +47,27 @@ TEST(InfoCommand, ShowsATableForPeople) {
     EXPECT_NE(outcome.output.find(part), std::string::npos) << part << "\n" << outcome.output;
 }
 
+TEST(InfoCommand, TellsTheInstrumentsOfAMixedFileApart) {
+  std::vector<test::TestSounding> mhs = test::test_soundings(4);
+  for (test::TestSounding& sounding : mhs) {
+    sounding.sensor = 11;
+    sounding.slots = {{43, 250}, {44, 251}, {45, 252}, {46, 253}, {47, 254}};
+  }
+  const ScratchFolder folder;
+  const std::string path = folder.write(
+      "file.bufr",
+      test::joined({some_file(), test::make_message(mhs, {.descriptors = {310010}, .slots_per_subset = 5})}));
+  const Outcome outcome = info({path});
+  EXPECT_EQ(outcome.code, 0);
+  for (const char* part : {"AMSU-A: 31 observations, MHS: 4 observations", "AMSU-A 15        31         0",
+                           "MHS 5         4         0    254.00"})
+    EXPECT_NE(outcome.output.find(part), std::string::npos) << part << "\n" << outcome.output;
+  const auto json = nlohmann::json::parse(info({"--json", path}).output);
+  EXPECT_EQ(json[0]["instruments"][1]["name"], "MHS");
+  EXPECT_EQ(json[0]["channels"][15]["instrument"], "MHS");
+  EXPECT_EQ(json[0]["channels"][15]["channel"], 1);
+}
+
 TEST(InfoCommand, WritesJsonForMachines) {
   const ScratchFolder folder;
   const Outcome outcome = info({"--json", folder.write("file.bufr", some_file()), folder.write("empty", {})});

@@ -70,6 +70,22 @@ TEST_F(StepsTest, RunWritesThinnedFilesAndTheReport) {
   EXPECT_FALSE(report.contains("seconds"));
 }
 
+TEST_F(StepsTest, RunExplainsEveryStepAndChangesNothing) {
+  const Outcome plain = call({"run", "-c", configuration_, "-o", out_, good_});
+  const Outcome explained = call({"run", "--explain", "-c", configuration_, "-o", scratch_.path("out2"), good_});
+  EXPECT_EQ(explained.exit_status, 0);
+  for (const char* part :
+       {"1 read         600 observations of 1 files", "good.bufr: 600 observations, bufr AMSU-A", "2 window",
+        "3 duplicates   0 left out", "duplicate_distance_km = 10", "4 screening    0 left out", "surface = []",
+        "5 bias", "6 first guess  0 of a file, 600 mean of the scan position",
+        "7 thinning     grid_eea: 120 of 600 retained", "retain_fraction = 0.2",
+        "8 output       1 files and report.json", "good.bufr: 120 of 600 observations"})
+    EXPECT_NE(explained.output.find(part), std::string::npos) << part << "\n" << explained.output;
+  for (const char* name : {"/good.bufr", "/report.json"})
+    EXPECT_EQ(test::read_bytes(out_ + name), test::read_bytes(scratch_.path("out2") + name));
+  EXPECT_EQ(plain.exit_status, 0);
+}
+
 TEST_F(StepsTest, RunSaysThreeWhereAFileWasRefusedAndStillThinsTheOthers) {
   EXPECT_EQ(call({"run", "-c", configuration_, "-o", out_, good_, bad_}).exit_status, 3);
   EXPECT_TRUE(std::filesystem::exists(out_ + "/good.bufr"));

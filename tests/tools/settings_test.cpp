@@ -43,6 +43,22 @@ TEST(Settings, AMethodsOptionsAreItsOwn) {
             std::string::npos);
 }
 
+TEST(Settings, NameWhatIsWrongInThePreparation) {
+  const std::string box = "[thinning]\nmethod = \"box\"\n[preparation]\n";
+  EXPECT_EQ(
+      problem_of(box + "duplicate_distnace_km = 3\n"),
+      "c.toml:4:1: unknown key \"duplicate_distnace_km\" in [preparation]; did you mean \"duplicate_distance_km\"?");
+  EXPECT_EQ(
+      problem_of(box + "surface = [\"water\"]\n"),
+      "c.toml:4:11: preparation.surface has the unknown surface \"water\"; known are sea, land, coast, ice, unknown");
+  EXPECT_EQ(problem_of(box + "channels = [\"amsu 5\"]\n"),
+            "c.toml:4:12: preparation.channels has the unknown instrument \"amsu\"; known are amsua, amsub, mhs, hirs, "
+            "atms");
+  EXPECT_EQ(problem_of(box + "first_guess = \"companion\"\n"),
+            "c.toml:4:15: preparation.first_guess = \"companion\" needs companion_files: name the files that hold the "
+            "first guess");
+}
+
 TEST(Settings, LeaveTheDaemonsSectionsToIt) {
   EXPECT_EQ(problem_of("[thinning]\nmethod = \"box\"\n[daemon]\nanything = 1\n[window]\nelse = 2\n"), "");
 }

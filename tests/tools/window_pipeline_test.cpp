@@ -77,8 +77,9 @@ TEST(WindowPipeline, RetainsTheShareAndCountsEverything) {
   EXPECT_EQ(outcome->retained.size(), 180U);
   ASSERT_EQ(outcome->files.size(), 1U);
   EXPECT_EQ(outcome->files[0].output.subsets, 180U);
-  EXPECT_GT(outcome->error.whole.mean_squared_k2, 0);
-  EXPECT_LT(outcome->error.whole.mean_squared_k2, outcome->error.whole.empty_mean_squared_k2);
+  const EstimationError& error = outcome->errors.at(Instrument::amsua).whole;
+  EXPECT_GT(error.mean_squared_k2, 0);
+  EXPECT_LT(error.mean_squared_k2, error.empty_mean_squared_k2);
   const auto read_back = read_observations(scratch.path("out/a"));
   ASSERT_TRUE(read_back);
   EXPECT_EQ(read_back->observations.size(), 180U);
@@ -121,6 +122,82 @@ TEST(WindowPipeline, AFileOfWhichNothingIsRetainedLeavesNoOutput) {
                   folder(scratch, "out"));
   ASSERT_TRUE(outcome) << outcome.error().message;
   EXPECT_EQ(contents_of(scratch.path("out")).size(), 1U);  // the report
+}
+
+// The same granule under two names, and one of them again a little beside: one of each is left, and the report says so.
+TEST(WindowPipeline, DuplicatesGoBeforeThinning) {
+  const ScratchFolder scratch;
+  const auto once = test::write_synthetic_file(scratch.path("a"), "NOAA-16", kSyntheticBeginMs, 40);
+  const auto again = test::write_synthetic_file(scratch.path("b"), "NOAA-16", kSyntheticBeginMs, 40);
+  const auto beside = test::write_synthetic_file(scratch.path("rars"), "NOAA-16", kSyntheticBeginMs + 400, 20);
+  const Settings settings = settings_of(
+      "[thinning]\nmethod = \"grid_eea\"\nretain_fraction = 1\n[preparation]\nduplicate_file_order = [\"b\", "
+      "\"r*\"]\n");
+  const auto outcome = thin_window(read_all({once, again, beside}), {}, {}, settings, folder(scratch, "out"));
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  const SounderTally& tally = outcome->prepared.sounders.at({207, Instrument::amsua});
+  EXPECT_EQ(tally.observations, 3000U);
+  EXPECT_EQ(tally.exact_duplicates, 1200U);
+  EXPECT_EQ(tally.near_duplicates, 600U);
+  EXPECT_EQ(outcome->retained.size(), 1200U);
+  EXPECT_EQ(contents_of(scratch.path("out")).size(), 2U) << "b and the report";
+  const test::ByteVector bytes = read_bytes(scratch.path("out/report.json"));
+  const std::string report(bytes.begin(), bytes.end());
+  EXPECT_NE(report.find("\"exact\": 1200"), std::string::npos) << report;
+}
+
+// AMSU-A twice, one of them called MHS: each is prepared, thinned and judged by itself, as if it were alone.
+TEST(WindowPipeline, InstrumentsAreThinnedApart) {
+  const ScratchFolder scratch;
+  const auto first = test::write_synthetic_file(scratch.path("a"), "NOAA-16", kSyntheticBeginMs, 40);
+  const auto second = test::write_synthetic_file(scratch.path("b"), "NOAA-16", kSyntheticBeginMs, 30);
+  std::vector<WindowFile> files = read_all({first, second});
+  files[1].contents.observations.instrument.assign(900, Instrument::mhs);
+  const Settings settings = settings_of(std::string(kTenth) + "[preparation]\nchannels = [\"mhs 3-5\"]\n");
+  const auto both = thin_window(files, {}, {}, settings, folder(scratch, "both"));
+  ASSERT_TRUE(both) << both.error().message;
+  EXPECT_EQ(both->retained.size(), 210U);
+  EXPECT_EQ(both->errors.size(), 2U);
+  EXPECT_EQ(both->errors.at(Instrument::mhs).whole.per_channel_k2.size(), 3U);
+  EXPECT_EQ(both->retained_by_sounder.at({207, Instrument::mhs}), 90U);
+  const auto alone = thin_window({files[1]}, {}, {}, settings, folder(scratch, "alone"));
+  ASSERT_TRUE(alone) << alone.error().message;
+  EXPECT_EQ(read_bytes(scratch.path("both/b")), read_bytes(scratch.path("alone/b")));
+  EXPECT_NE(report_table(*both).find("all MHS"), std::string::npos) << report_table(*both);
+}
+
+TEST(WindowPipeline, SaysWhyNothingIsLeft) {
+  const ScratchFolder scratch;
+  const auto path = test::write_synthetic_file(scratch.path("a"), "NOAA-16", kSyntheticBeginMs, 2);
+  const auto outcome =
+      thin_window(read_all({path}), {}, {},
+                  settings_of(std::string(kTenth) + "[preparation]\nplatforms = [\"Aqua\"]\n"), folder(scratch, "out"));
+  ASSERT_FALSE(outcome);
+  EXPECT_NE(outcome.error().message.find("60 were screened out (60 satellite not among platforms)"), std::string::npos)
+      << outcome.error().message;
+}
+
+// A file with model equivalents as its own companion: the same innovations, so the same choice.
+TEST(WindowPipeline, ACompanionGivesWhatTheFileItselfWould) {
+  THIN_REQUIRE_SHARED_DATA();
+  const ScratchFolder scratch;
+  const std::string path = test::shared_data() / "observations/ioda/amsua_n19.20211211T210000Z.nc4";
+  const std::string common =
+      std::string(kTenth) + "[input]\nplatform = \"NOAA-19\"\n[preparation]\nchannels = [5, 6]\n";
+  const auto thinned = [&](const std::string& name, const std::string& more) {
+    const Settings settings = settings_of(common + more);
+    Result<ReadObservations> contents = read_observations(path, settings.input);
+    EXPECT_TRUE(contents) << contents.error().message;
+    auto outcome = thin_window({{"a.nc4", path, std::move(*contents)}}, {}, {}, settings, folder(scratch, name));
+    EXPECT_TRUE(outcome) << outcome.error().message;
+    return std::move(*outcome);
+  };
+  const WindowOutcome own = thinned("own", "first_guess = \"file\"\n");
+  const WindowOutcome other = thinned("other", "first_guess = \"companion\"\ncompanion_files = [\"" + path + "\"]\n");
+  EXPECT_GT(own.prepared.first_guess.given, 1000U);
+  EXPECT_EQ(own.prepared.first_guess.given, other.prepared.first_guess.given);
+  EXPECT_EQ(own.prepared.observations.values, other.prepared.observations.values);
+  EXPECT_EQ(own.retained, other.retained);
 }
 
 // Every real file: the output decodes with ecCodes alone, holds exactly the retained fields of view, and every key of

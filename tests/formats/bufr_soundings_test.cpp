@@ -82,12 +82,12 @@ INSTANTIATE_TEST_SUITE_P(
                     MessageShape{.compressed = false, .descriptors = {310009, 33007, 12063}, .temperatures_behind = 1},
                     MessageShape{.descriptors = {1031, 310009}}, MessageShape{.ecmwf_section2 = true}));
 
-TEST(BufrAmsuA, OneSubsetOfEitherKind) {
+TEST(BufrSoundings, OneSubsetOfEitherKind) {
   for (const bool compressed : {false, true})
     EXPECT_EQ(read_soundings(test_soundings(1), shape_of(compressed)).observations.size(), 1U);
 }
 
-TEST(BufrAmsuA, ChannelsStandInAnySlotAndDifferBetweenSubsets) {
+TEST(BufrSoundings, ChannelsStandInAnySlotAndDifferBetweenSubsets) {
   std::vector<TestSounding> soundings = test_soundings(20);
   std::mt19937 random(5);
   for (TestSounding& sounding : soundings) std::shuffle(sounding.slots.begin(), sounding.slots.end(), random);
@@ -100,7 +100,7 @@ TEST(BufrAmsuA, ChannelsStandInAnySlotAndDifferBetweenSubsets) {
   }
 }
 
-TEST(BufrAmsuA, UnusedSlotsAndDeadChannelsAreMissing) {
+TEST(BufrSoundings, UnusedSlotsAndDeadChannelsAreMissing) {
   std::vector<TestSounding> soundings = test_soundings(4);
   for (TestSounding& sounding : soundings) {
     sounding.slots[2] = {0, 0};                          // unused, as some centres write it
@@ -120,7 +120,7 @@ TEST(BufrAmsuA, UnusedSlotsAndDeadChannelsAreMissing) {
   }
 }
 
-TEST(BufrAmsuA, OfTwoSlotsTheFirstWithATemperatureCounts) {
+TEST(BufrSoundings, OfTwoSlotsTheFirstWithATemperatureCounts) {
   std::vector<TestSounding> soundings = test_soundings(2);
   soundings[0].slots[1] = {28, 300};
   soundings[1].slots[0].second = kMissingValue;
@@ -130,7 +130,7 @@ TEST(BufrAmsuA, OfTwoSlotsTheFirstWithATemperatureCounts) {
   EXPECT_NEAR(set.values_of(1)[0], 300, 0.0051);
 }
 
-TEST(BufrAmsuA, TimeTurnsTheYearWithinAMessage) {
+TEST(BufrSoundings, TimeTurnsTheYearWithinAMessage) {
   std::vector<TestSounding> soundings = test_soundings(4);
   const double clocks[4][6] = {
       {2019, 12, 31, 23, 59, 59.75}, {2019, 12, 31, 23, 59, 60}, {2020, 1, 1, 0, 0, 0.125}, {2020, 2, 29, 6, 7, 8.999}};
@@ -152,7 +152,7 @@ TEST(BufrAmsuA, TimeTurnsTheYearWithinAMessage) {
   }
 }
 
-TEST(BufrAmsuA, PositionsAtTheEdgesOfTheMap) {
+TEST(BufrSoundings, PositionsAtTheEdgesOfTheMap) {
   std::vector<TestSounding> soundings = test_soundings(5);
   const double places[5][2] = {{90, 0}, {-90, 0}, {0, 180}, {0, -180}, {12.3456, -179.9999}};
   for (std::size_t i = 0; i < 5; ++i) {
@@ -168,7 +168,7 @@ TEST(BufrAmsuA, PositionsAtTheEdgesOfTheMap) {
   }
 }
 
-TEST(BufrAmsuA, SubsetsWithoutPositionOrTimeAreLeftOutAndCounted) {
+TEST(BufrSoundings, SubsetsWithoutPositionOrTimeAreLeftOutAndCounted) {
   std::vector<TestSounding> soundings = test_soundings(8);
   soundings[1].latitude_deg = kMissingValue;
   soundings[2].longitude_deg = kMissingValue;
@@ -185,7 +185,7 @@ TEST(BufrAmsuA, SubsetsWithoutPositionOrTimeAreLeftOutAndCounted) {
   }
 }
 
-TEST(BufrAmsuA, NumbersThatAreMissingAreUnknown) {
+TEST(BufrSoundings, NumbersThatAreMissingAreUnknown) {
   std::vector<TestSounding> soundings = test_soundings(3);
   for (TestSounding& s : soundings) s.platform = s.scan_line = s.field_of_view = kMissingValue;
   const ObservationSet set = read_soundings(soundings).observations;
@@ -195,7 +195,7 @@ TEST(BufrAmsuA, NumbersThatAreMissingAreUnknown) {
   EXPECT_EQ(set.field_of_view[2], kUnknownNumber);
 }
 
-TEST(BufrAmsuA, WithoutSensorTheChannelsDecide) {
+TEST(BufrSoundings, WithoutSensorTheChannelsDecide) {
   std::vector<TestSounding> soundings = test_soundings(3);
   for (TestSounding& s : soundings) s.sensor = kMissingValue;
   EXPECT_EQ(read_soundings(soundings).observations.size(), 3U);
@@ -203,9 +203,10 @@ TEST(BufrAmsuA, WithoutSensorTheChannelsDecide) {
   EXPECT_EQ(error_of(make_message(soundings)).kind, ErrorKind::input);
 }
 
-TEST(BufrAmsuA, OtherSensorsAreNamed) {
+TEST(BufrSoundings, OtherSensorsAreNamed) {
   std::vector<TestSounding> soundings = test_soundings(3);
-  for (const auto& [sensor, name] : {std::pair(0, "HIRS"), std::pair(4, "AMSU-B"), std::pair(11, "MHS")}) {
+  for (const auto& [sensor, name] :
+       {std::pair(1, "MSU (sensor 1)"), std::pair(5, "AVHRR"), std::pair(9, "another instrument (sensor 9)")}) {
     for (TestSounding& s : soundings) s.sensor = sensor;
     const Error error = error_of(make_message(soundings, {.descriptors = {310008}, .slots_per_subset = 19}));
     EXPECT_EQ(error.kind, ErrorKind::input);
@@ -213,22 +214,22 @@ TEST(BufrAmsuA, OtherSensorsAreNamed) {
   }
 }
 
-TEST(BufrAmsuA, SubsetsOfAnotherSensorAreLeftOut) {
+TEST(BufrSoundings, SubsetsOfAnotherSensorAreLeftOut) {
   std::vector<TestSounding> soundings = test_soundings(6);
-  soundings[2].sensor = soundings[3].sensor = 0;
+  soundings[2].sensor = soundings[3].sensor = 5;
   const ReadObservations contents = read_soundings(soundings);
   EXPECT_EQ(contents.observations.size(), 4U);
   EXPECT_EQ(contents.skipped.size(), 1U);
 }
 
-TEST(BufrAmsuA, MessagesCountOnOverEnvelopesStrayBytesAndOtherKinds) {
+TEST(BufrSoundings, MessagesCountOnOverEnvelopesStrayBytesAndOtherKinds) {
   std::vector<TestSounding> other = test_soundings(3);
-  for (TestSounding& s : other) s.sensor = 0;
-  const ByteVector amsua = make_message(test_soundings(5)), hirs = make_message(other);
+  for (TestSounding& s : other) s.sensor = 5;
+  const ByteVector amsua = make_message(test_soundings(5)), avhrr = make_message(other);
   ByteVector damaged = amsua;
   damaged.back() = 'x';
   const ReadObservations contents = read_bytes_as_file(test::joined(
-      {test::bulletin(amsua), test::bytes_of("junk"), hirs, {0, 0}, damaged, amsua, test::bytes_of("0000000000")}));
+      {test::bulletin(amsua), test::bytes_of("junk"), avhrr, {0, 0}, damaged, amsua, test::bytes_of("0000000000")}));
   EXPECT_EQ(contents.message_count, 3U);
   ASSERT_EQ(contents.observations.size(), 10U);
   EXPECT_EQ(contents.observations.source[0], (SourceReference{0, 0, 0}));
@@ -236,17 +237,16 @@ TEST(BufrAmsuA, MessagesCountOnOverEnvelopesStrayBytesAndOtherKinds) {
   ASSERT_EQ(contents.skipped.size(), 3U);
   EXPECT_NE(contents.skipped[0].reason.find("4 stray bytes"), std::string::npos);
   EXPECT_EQ(contents.skipped[1].message, 1U);
-  EXPECT_NE(contents.skipped[1].reason.find("HIRS"), std::string::npos);
+  EXPECT_NE(contents.skipped[1].reason.find("AVHRR"), std::string::npos);
   EXPECT_NE(contents.skipped[2].reason.find("7777"), std::string::npos);
 }
 
-TEST(BufrAmsuA, DescriptorsThatShiftRanksAreRefused) {
+TEST(BufrSoundings, DescriptorsThatShiftRanksAreRefused) {
   const ByteVector two_latitudes = make_message(test_soundings(2), {.descriptors = {5001, 310009}});
   EXPECT_NE(error_of(two_latitudes).message.find("5001"), std::string::npos);
 }
 
-// ecCodes ends the process over each of these; they must not reach it.
-TEST(BufrAmsuA, WhatEcCodesWouldDieOfIsRefused) {
+TEST(BufrSoundings, TablesAndReplicationsThatAreNotThereAreRefused) {
   const ByteVector message = make_message(test_soundings(2), {.descriptors = {310009, 101002, 33007}});
   EXPECT_EQ(read_bytes_as_file(message).observations.size(), 2U);
   ByteVector unknown_tables = message, long_replication = message;
@@ -260,19 +260,112 @@ TEST(BufrAmsuA, WhatEcCodesWouldDieOfIsRefused) {
   }
 }
 
-TEST(BufrAmsuA, OperatorsThatEcCodesWouldDieOfAreRefused) {
+TEST(BufrSoundings, OperatorsThatAreNotReadAreNamed) {
   const ByteVector message = make_message(test_soundings(2), {.descriptors = {310009, 33007, 33007, 33007}});
-  const auto with = [&](std::vector<std::pair<int, int>> descriptors) {
+  const auto with = [&](int x, int y) {
     ByteVector changed = message;
-    for (std::size_t i = 0; i < descriptors.size(); ++i) {
-      changed[8 + 22 + 9 + 2 * i] = static_cast<std::uint8_t>(0x80 + descriptors[i].first);
-      changed[8 + 22 + 10 + 2 * i] = static_cast<std::uint8_t>(descriptors[i].second);
-    }
+    changed[8 + 22 + 9] = static_cast<std::uint8_t>(0x80 + x);
+    changed[8 + 22 + 10] = static_cast<std::uint8_t>(y);
     return error_of(changed).message;
   };
-  EXPECT_NE(with({{31, 31}}).find("operators without sense"), std::string::npos);          // unknown
-  EXPECT_NE(with({{22, 0}, {36, 0}}).find("operators without sense"), std::string::npos);  // no bitmap
+  EXPECT_NE(with(31, 31).find("operator 231031, which is not read"), std::string::npos);  // none of table C
+  EXPECT_NE(with(24, 255).find("operator 224255, which is not read"), std::string::npos);
+  EXPECT_NE(with(1, 100).find("leave no bits to element 033007"), std::string::npos) << with(1, 100);
 }
+
+// A few bytes must not grow to millions of observations.
+TEST(BufrSoundings, MoreSubsetsThanBitsAreRefused) {
+  ByteVector message = make_message(test_soundings(1));
+  message[8 + 22 + 4] = 0xff;  // 65,281 subsets, all of them the same
+  EXPECT_NE(error_of(message).message.find("more subsets than bits"), std::string::npos) << error_of(message).message;
+}
+
+struct Sounder {
+  Instrument instrument;
+  int sensor, first_code, channels;
+  MessageShape shape;
+};
+
+class Sounders : public testing::TestWithParam<Sounder> {
+ protected:
+  std::vector<TestSounding> soundings(int count) const {
+    std::vector<TestSounding> made = test_soundings(count);
+    for (TestSounding& sounding : made) {
+      sounding.sensor = GetParam().sensor;
+      sounding.slots.clear();
+      for (int channel = 1; channel <= GetParam().channels; ++channel)
+        sounding.slots.emplace_back(GetParam().first_code + channel - 1, 200 + channel + 0.1 * sounding.field_of_view);
+    }
+    return made;
+  }
+};
+
+TEST_P(Sounders, ReadAsWritten) {
+  for (const bool compressed : {false, true}) {
+    MessageShape shape = GetParam().shape;
+    shape.compressed = compressed;
+    const ReadObservations contents = read_soundings(soundings(7), shape);
+    EXPECT_EQ(contents.instrument, instrument_name(GetParam().instrument));
+    const ObservationSet& set = contents.observations;
+    ASSERT_EQ(set.size(), 7U);
+    ASSERT_EQ(set.channel_count(), static_cast<std::size_t>(GetParam().channels));
+    for (std::size_t i = 0; i < 7; ++i) {
+      EXPECT_EQ(set.instrument[i], GetParam().instrument);
+      for (std::size_t place = 0; place < set.channel_count(); ++place)
+        EXPECT_NEAR(set.values_of(i)[place], 201.1 + static_cast<double>(place) + 0.1 * static_cast<double>(i), 0.0051);
+    }
+  }
+}
+
+TEST_P(Sounders, AFileOfTwoInstrumentsIsOneSet) {
+  const ByteVector file = test::joined({make_message(soundings(3), GetParam().shape), make_message(test_soundings(2)),
+                                        make_message(soundings(1), GetParam().shape)});
+  const ScratchFolder folder;
+  const auto contents = read_observations(folder.write("file", file));
+  ASSERT_TRUE(contents.ok()) << contents.error().message;
+  const ObservationSet& set = contents->observations;
+  ASSERT_EQ(set.size(), 6U);
+  EXPECT_TRUE(contents->skipped.empty());
+  if (GetParam().instrument == Instrument::amsua) return;
+  EXPECT_EQ(contents->instrument, "AMSU-A, " + std::string(instrument_name(GetParam().instrument)));
+  EXPECT_EQ(set.channel_count(), 15 + static_cast<std::size_t>(GetParam().channels));
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(set.source[i].message == 1, set.instrument[i] == Instrument::amsua);
+    for (std::size_t place = 0; place < set.channel_count(); ++place)
+      EXPECT_EQ(std::isnan(set.values_of(i)[place]), !set.measures(i, place));
+  }
+}
+
+// HIRS and AMSU-A in one message, as the sensor of each subset says.
+TEST_P(Sounders, SubsetsOfTwoInstrumentsInOneMessage) {
+  std::vector<TestSounding> both = soundings(4);
+  both[1].sensor = 3;
+  both[1].slots = {{28, 250}};
+  const ScratchFolder folder;
+  const auto contents = read_observations(folder.write("file", make_message(both, GetParam().shape)));
+  ASSERT_TRUE(contents.ok()) << contents.error().message;
+  const ObservationSet& set = contents->observations;
+  ASSERT_EQ(set.size(), 4U);
+  const auto amsua = std::find(set.instrument.begin(), set.instrument.end(), Instrument::amsua);
+  ASSERT_NE(amsua, set.instrument.end());
+  EXPECT_EQ(set.source[static_cast<std::size_t>(amsua - set.instrument.begin())].subset,
+            GetParam().instrument == Instrument::amsua ? 0U : 1U);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Bufr, Sounders,
+    testing::Values(Sounder{Instrument::amsua, 3, 28, 15, {}},
+                    Sounder{Instrument::amsub, 4, 43, 5, {.descriptors = {310010}, .slots_per_subset = 5}},
+                    Sounder{Instrument::mhs, 11, 43, 5, {.descriptors = {310010}, .slots_per_subset = 5}},
+                    Sounder{
+                        Instrument::mhs, 11, 43, 5, {.edition = 3, .descriptors = {310008}, .slots_per_subset = 19}},
+                    Sounder{Instrument::hirs, 0, 1, 19, {.descriptors = {310008}, .slots_per_subset = 19}}),
+    [](const auto& test) {
+      const bool long_form = test.param.shape.descriptors.front() == 310008;
+      std::string name = instrument_name(test.param.instrument) + std::string(long_form ? "In310008" : "");
+      std::erase(name, '-');
+      return name;
+    });
 
 }  // namespace
 }  // namespace thin
