@@ -102,8 +102,8 @@ ObservationSet spiral_innovations(std::size_t count, std::uint64_t seed, bool no
          .longitude_deg = points[i].longitude_deg,
          .time_ms = kBeginMs,
          .platform = 0,
-         .scan_line = static_cast<std::int32_t>(i),
-         .field_of_view = 1,
+         .scan_line = 1,
+         .field_of_view = static_cast<std::int32_t>(i) + 1,
          .source = {}},
         std::span(points[i].values).subspan(kFirstChannel, kChannelCount), points[i].signal_free, truth);
   return finished(std::move(set), std::move(truth));
@@ -131,8 +131,8 @@ ObservationSet gradient_innovations(std::size_t count, std::uint64_t seed, bool 
          .longitude_deg = east_km / km_per_degree,
          .time_ms = kBeginMs,
          .platform = 0,
-         .scan_line = static_cast<std::int32_t>(i),
-         .field_of_view = 1,
+         .scan_line = 1,
+         .field_of_view = static_cast<std::int32_t>(i) + 1,
          .source = {}},
         std::span(&value, 1), signal_free, truth);
   }

@@ -1,7 +1,8 @@
 #pragma once
 
 // Sets of made-up innovations on which methods are compared, ready to be thinned. Each is a function of its arguments
-// alone. In the variable kSignalFree every observation carries the truth: 1 where nothing but noise is to be seen, 0
+// alone; where there is no scan, every observation is a field of view of its own, so that none counts as a duplicate of
+// another. In the variable kSignalFree every observation carries the truth: 1 where nothing but noise is to be seen, 0
 // elsewhere.
 
 #include <cstdint>

@@ -96,6 +96,9 @@ Result<int> run(const Arguments& arguments) {
   if (arguments.shuffle) all = shuffled(*all, *arguments.shuffle);
   Result<PreparationData> data = read_preparation_data(settings->preparation);
   if (!data) return data.error();
+  Result<std::optional<ObservationSet>> companions = read_companions(settings->preparation, settings->input);
+  if (!companions) return companions.error();
+  data->companions = std::move(*companions);
   data->file_names = arguments.files;
   const Result<Prepared> prepared = prepare(*all, {}, settings->preparation, *data);
   if (!prepared) return prepared.error();

@@ -81,8 +81,7 @@ Json variant_json(const Variant& variant) {
   Json json = {{"label", variant.label}, {"method", variant.thinner->method_name()}};
   json["fit"] = variant.fit.empty() ? Json() : Json(variant.fit);
   const OptionTable options = variant.options.without({"retain_count", "retain_fraction", variant.fit});
-  for (const Option& option : options.options())
-    json["options"][option.name] = option.current_value();
+  for (const Option& option : options.options()) json["options"][option.name] = option.current_value();
   return json;
 }
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "libthin/analysis/count_fitting.h"
+#include "libthin/tools/preparation_data.h"
 
 namespace thin {
 namespace {
@@ -93,7 +95,11 @@ void VariantKeys::declare(OptionTable& table) {
 Result<EvaluationSettings> read_evaluation_settings(const std::string& path) {
   Result<Configuration> configuration = Configuration::read(path);
   if (!configuration) return configuration.error();
-  return read_evaluation_settings(std::move(*configuration));
+  Result<EvaluationSettings> settings = read_evaluation_settings(std::move(*configuration));
+  std::error_code ignored;
+  const std::filesystem::path absolute = std::filesystem::absolute(path, ignored);
+  if (settings) make_paths_absolute(settings->preparation, absolute.parent_path().string());
+  return settings;
 }
 
 Result<EvaluationSettings> read_evaluation_settings(Configuration configuration) {
