@@ -72,6 +72,23 @@ TEST_F(StepsTest, RunWritesThinnedFilesAndTheReport) {
   EXPECT_FALSE(report.contains("seconds"));
 }
 
+TEST_F(StepsTest, RunSaysThreeWhereAFileWasRefusedAndStillThinsTheOthers) {
+  EXPECT_EQ(call({"run", "-c", configuration_, "-o", out_, good_, bad_}).exit_status, 3);
+  EXPECT_TRUE(std::filesystem::exists(out_ + "/good.bufr"));
+  const Json report = Json::parse(std::ifstream(out_ + "/report.json"));
+  ASSERT_EQ(report["refused"].size(), 1U);
+  EXPECT_EQ(report["refused"][0]["name"], "bad.bufr");
+  EXPECT_EQ(call({"run", "-c", configuration_, "-o", out_, bad_}).exit_status, 3);
+}
+
+TEST_F(StepsTest, RunRefusesWhatWouldOverwrite) {
+  EXPECT_EQ(call({"run", "-c", configuration_, "-o", scratch_.path("."), good_}).exit_status, 2);
+  std::filesystem::create_directories(scratch_.path("other"));
+  std::filesystem::copy(good_, scratch_.path("other/good.bufr"));
+  EXPECT_EQ(call({"run", "-c", configuration_, "-o", out_, good_, scratch_.path("other/good.bufr")}).exit_status, 2);
+  EXPECT_EQ(call({"run", "-c", configuration_, "-o", out_, "--begin", "tomorrow", good_}).exit_status, 2);
+}
+
 TEST_F(StepsTest, RunTakesInnovationsFromNetcdfAndFlagsWhereAskedTo) {
   const std::string ioda = test::write_ioda(scratch_.path("amsua_n19.nc4"), {.locations = 200});
   const auto settings = [&](const std::string& input) {
@@ -96,23 +113,6 @@ TEST_F(StepsTest, RunTakesInnovationsFromNetcdfAndFlagsWhereAskedTo) {
   ASSERT_TRUE(flagged.ok()) << flagged.error().message;
   EXPECT_EQ(flagged->observations.size(), 200U);
   EXPECT_EQ(Json::parse(std::ifstream(out_ + "/report.json"))["files"][0]["notes"][0], "innovations: ObsValue - hofx");
-}
-
-TEST_F(StepsTest, RunSaysThreeWhereAFileWasRefusedAndStillThinsTheOthers) {
-  EXPECT_EQ(call({"run", "-c", configuration_, "-o", out_, good_, bad_}).exit_status, 3);
-  EXPECT_TRUE(std::filesystem::exists(out_ + "/good.bufr"));
-  const Json report = Json::parse(std::ifstream(out_ + "/report.json"));
-  ASSERT_EQ(report["refused"].size(), 1U);
-  EXPECT_EQ(report["refused"][0]["name"], "bad.bufr");
-  EXPECT_EQ(call({"run", "-c", configuration_, "-o", out_, bad_}).exit_status, 3);
-}
-
-TEST_F(StepsTest, RunRefusesWhatWouldOverwrite) {
-  EXPECT_EQ(call({"run", "-c", configuration_, "-o", scratch_.path("."), good_}).exit_status, 2);
-  std::filesystem::create_directories(scratch_.path("other"));
-  std::filesystem::copy(good_, scratch_.path("other/good.bufr"));
-  EXPECT_EQ(call({"run", "-c", configuration_, "-o", out_, good_, scratch_.path("other/good.bufr")}).exit_status, 2);
-  EXPECT_EQ(call({"run", "-c", configuration_, "-o", out_, "--begin", "tomorrow", good_}).exit_status, 2);
 }
 
 TEST_F(StepsTest, RunSaysTwoForABadConfiguration) {
