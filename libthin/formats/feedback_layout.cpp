@@ -104,7 +104,7 @@ Result<Reports> read_reports(const NetcdfFile& file) {
   }
   const auto instype = file.column("instype", reports.header_length);
   if (!instype) return instype.error();
-  std::size_t in_reports = 0;
+  std::vector<bool> taken(reports.body_count);
   for (std::size_t i = 0; i < reports.header_count; ++i) {
     const double begin = (*first)[i] - 1, count = (*length)[i];
     const bool empty = count == 0;
@@ -113,8 +113,9 @@ Result<Reports> read_reports(const NetcdfFile& file) {
                                        count, begin + 1, bodies));
     reports.begin.push_back(empty ? 0 : static_cast<std::uint32_t>(begin));
     reports.end.push_back(reports.begin.back() + static_cast<std::uint32_t>(count));
-    in_reports += static_cast<std::size_t>(count);
-    if (in_reports > reports.body_count) return damaged(file, "whose reports share parts of the body");
+    const auto begin_of = taken.begin() + reports.begin[i], end_of = taken.begin() + reports.end[i];
+    if (std::find(begin_of, end_of, true) != end_of) return damaged(file, "whose reports share parts of the body");
+    std::fill(begin_of, end_of, true);
     const Instrument instrument = instype->empty() ? Instrument::unknown : instrument_of((*instype)[i]);
     const bool radiances =
         (*obstype)[i] == kObstypeRadiances &&
