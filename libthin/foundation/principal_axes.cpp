@@ -27,19 +27,22 @@ PrincipalAxes principal_axes(std::span<const double> coordinates, int dimension,
   const Eigen::Map<const RowMatrix> points(coordinates.data(), rows, dimension);
   const auto weight = [&](Eigen::Index row) { return weights.empty() ? 1.0 : weights[static_cast<std::size_t>(row)]; };
 
+  // Plain loops: at three or four dimensions a temporary matrix for each point would take most of the time.
   double total_weight = 0;
-  Eigen::VectorXd centroid = Eigen::VectorXd::Zero(dimension);
+  Eigen::VectorXd centroid = Eigen::VectorXd::Zero(dimension), deviation(dimension);
   for (Eigen::Index row = 0; row < rows; ++row) {
     total_weight += weight(row);
-    centroid += weight(row) * points.row(row).transpose();
+    for (Eigen::Index i = 0; i < dimension; ++i) centroid[i] += weight(row) * points(row, i);
   }
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(dimension, dimension);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(dimension, dimension);  // its lower triangle
   if (total_weight > 0) {
     centroid /= total_weight;
     for (Eigen::Index row = 0; row < rows; ++row) {
-      const Eigen::VectorXd deviation = points.row(row).transpose() - centroid;
-      covariance += weight(row) / total_weight * deviation * deviation.transpose();
+      for (Eigen::Index i = 0; i < dimension; ++i) deviation[i] = points(row, i) - centroid[i];
+      for (Eigen::Index i = 0; i < dimension; ++i)
+        for (Eigen::Index j = 0; j <= i; ++j) covariance(i, j) += weight(row) * deviation[i] * deviation[j];
     }
+    covariance /= total_weight;
   }
 
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);  // ascending

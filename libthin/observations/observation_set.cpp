@@ -164,6 +164,14 @@ void ObservationSet::reserve(std::size_t count) {
   values.reserve(count * channels.size());
 }
 
+std::vector<double> ObservationSet::values_or_zero() const {
+  std::vector<double> result = values;
+  if (channel_instrument.empty()) return result;
+  for (std::size_t i = 0; i < result.size(); ++i)
+    if (!measures(i / channels.size(), i % channels.size())) result[i] = 0;
+  return result;
+}
+
 ObservationSet ObservationSet::select(std::span<const std::uint32_t> indices) const {
   ObservationSet selected;
   selected.channels = channels;

@@ -100,6 +100,9 @@ struct ObservationSet {
 
   void reserve(std::size_t count);
 
+  // The values with 0 for what an observation's instrument does not measure.
+  std::vector<double> values_or_zero() const;
+
   // The given observations in the given order.
   ObservationSet select(std::span<const std::uint32_t> indices) const;
 

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
+#include <regex>
 
 namespace thin {
 namespace {
@@ -70,6 +72,17 @@ std::optional<std::int64_t> from_iso8601(const std::string& text) {
       return std::nullopt;
   }
   return to_time_ms(t);
+}
+
+std::optional<std::int64_t> duration_ms_from_iso8601(const std::string& text) {
+  static const std::regex form(R"(P(?:(\d{1,6})D)?(?:T(?=\d)(?:(\d{1,6})H)?(?:(\d{1,6})M)?(?:(\d{1,9})S)?)?)");
+  constexpr std::int64_t unit_ms[] = {86'400'000, 3'600'000, 60'000, 1'000};
+  std::smatch parts;
+  if (!std::regex_match(text, parts, form) || text == "P") return std::nullopt;
+  std::int64_t sum_ms = 0;
+  for (std::size_t i = 0; i < std::size(unit_ms); ++i)
+    if (parts[i + 1].matched) sum_ms += unit_ms[i] * std::stoll(parts[i + 1].str());
+  return sum_ms;
 }
 
 }  // namespace thin

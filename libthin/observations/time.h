@@ -27,4 +27,7 @@ std::string to_compact_iso8601(std::int64_t time_ms);
 // Reads "YYYY-MM-DDTHH:MM:SSZ" with optional fraction, seconds and Z, or a date alone (midnight).
 std::optional<std::int64_t> from_iso8601(const std::string& text);
 
+// Reads a duration of days, hours, minutes and seconds, all whole and in this order: "PT1H", "P1DT12H", "PT1M30S".
+std::optional<std::int64_t> duration_ms_from_iso8601(const std::string& text);
+
 }  // namespace thin

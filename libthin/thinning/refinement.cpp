@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <random>
 
 #include "libthin/thinning/increment_queue.h"
@@ -10,23 +9,12 @@
 namespace thin {
 namespace {
 
-double env(const char* n, double d) {
-  const char* v = std::getenv(n);
-  return v ? std::atof(v) : d;
-}
-double hot() {
-  static double v = env("HOT", 1);
-  return v;
-}
-double cold() {
-  static double v = env("COLD", 1e-3);
-  return v;
-}
-double far_share() {
-  static double v = env("FAR", 0.1);
-  return v;
-}
-const double kTrialsPerObservation = env("TRIALS", 20);
+// Of annealing, found by trial on synthetic soundings: the temperature falls from what a retained observation has of
+// the error to a small share of that, and a few swaps go far, since density must move too.
+constexpr double kTrialsPerObservation = 20;
+constexpr double kColdest = 0.03;
+constexpr double kFarShare = 0.05;
+
 // What an exchange must gain, as a share of the error, so that rounding alone keeps nothing going.
 constexpr double kLeastGain = 1e-12;
 
@@ -168,19 +156,17 @@ void exchange(EstimationSums& sums, const SwapRules& rules) {
 void anneal(EstimationSums& sums, const SwapRules& rules, std::uint64_t trials, std::uint64_t seed) {
   std::vector<std::uint32_t> retained = sums.retained();
   const std::size_t n = sums.observation_count();
-  if (retained.empty() || retained.size() == n) return;
+  if (retained.empty() || retained.size() == n || trials == 0) return;
   const std::vector<std::uint32_t> before = retained;
   const double error_before = sums.error_sum();
   Random random(seed);
-  // From about what a retained observation is worth down to a thousandth of it.
-  const double hottest = hot() * error_before / static_cast<double>(retained.size());
-  const double cooling = std::pow(cold(), 1 / static_cast<double>(trials));
-  double temperature = hottest;
+  double temperature = error_before / static_cast<double>(retained.size());
+  const double cooling = std::pow(kColdest, 1 / static_cast<double>(trials));
   for (std::uint64_t trial = 0; trial < trials; ++trial, temperature *= cooling) {
     const std::size_t place = random.below(retained.size());
     const std::uint32_t out = retained[place];
-    const std::uint32_t in = random.share() < far_share() ? static_cast<std::uint32_t>(random.below(n))
-                                                          : sums.observation_near(out, random.share(), random.share());
+    const std::uint32_t in = random.share() < kFarShare ? static_cast<std::uint32_t>(random.below(n))
+                                                        : sums.observation_near(out, random.share(), random.share());
     if (sums.is_retained(in) || !may_replace(rules, out, in) || !stands_apart(sums, rules, in, out)) continue;
     const double added = sums.swap_increment(out, in);
     if (added >= 0 && random.share() >= std::exp(-added / temperature)) continue;

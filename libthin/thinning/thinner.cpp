@@ -31,11 +31,9 @@ Result<void> require_finite_values(const ObservationSet& observations) {
 // The values in units of the observation errors, 0 where not measured.
 std::vector<double> weighted_values(const ObservationSet& observations, const std::vector<double>& errors_k) {
   const std::size_t channels = observations.channel_count();
-  std::vector<double> values = observations.values;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!observations.measures(i / channels, i % channels)) values[i] = 0;
-    if (!errors_k.empty()) values[i] /= errors_k[i % channels];
-  }
+  std::vector<double> values = observations.values_or_zero();
+  if (!errors_k.empty())
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] /= errors_k[i % channels];
   return values;
 }
 

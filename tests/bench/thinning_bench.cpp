@@ -5,8 +5,8 @@
 #include <benchmark/benchmark.h>
 
 #include "libthin/estimation/gme_grid.h"
-#include "libthin/foundation/parallel.h"
 #include "libthin/estimation/neighbourhood_table.h"
+#include "libthin/foundation/parallel.h"
 #include "libthin/thinning/thinner.h"
 #include "tests/support/synthetic_soundings.h"
 
@@ -66,12 +66,17 @@ EEA_BENCHMARKS(grid_eea);
 EEA_BENCHMARKS(top_down_eea);
 EEA_BENCHMARKS(grid_top_down_eea);
 BENCHMARK(neighbourhoods)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(thin_with, box, "box", {{"horizontal_mesh", 200.0}})
-    ->Arg(kObservations)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(thin_with, stepwise, "stepwise", {{"step", std::int64_t{3}}})
-    ->Arg(kObservations)
-    ->Unit(benchmark::kMillisecond);
+
+// The other methods also on 100,000 observations.
+#define METHOD_BENCHMARK(name, ...) \
+  BENCHMARK_CAPTURE(thin_with, name, __VA_ARGS__)->Arg(kObservations)->Arg(100000)->Unit(benchmark::kMillisecond)
+METHOD_BENCHMARK(top_down_clustering, "top_down_clustering", {{"retain_fraction", 3000.0 / kObservations}});
+METHOD_BENCHMARK(box, "box", {{"horizontal_mesh", 200.0}});
+METHOD_BENCHMARK(box_gme, "box", {{"grid", std::string("gme")}, {"level", std::int64_t{5}}});
+METHOD_BENCHMARK(gaussian, "gaussian", {{"horizontal_mesh", 200.0}});
+METHOD_BENCHMARK(poisson_disk, "poisson_disk", {{"min_horizontal_spacing", 150.0}});
+METHOD_BENCHMARK(octree, "octree", {{"value_tolerance", 0.4}});
+METHOD_BENCHMARK(stepwise, "stepwise", {{"step", std::int64_t{3}}});
 
 }  // namespace
 }  // namespace thin

@@ -53,5 +53,16 @@ TEST(Time, WritesAndReadsIso8601) {
     EXPECT_FALSE(from_iso8601(wrong)) << wrong;
 }
 
+TEST(Time, ReadsDurations) {
+  EXPECT_EQ(duration_ms_from_iso8601("PT1H"), 3'600'000);
+  EXPECT_EQ(duration_ms_from_iso8601("PT01H"), 3'600'000);
+  EXPECT_EQ(duration_ms_from_iso8601("P1DT12H"), 129'600'000);
+  EXPECT_EQ(duration_ms_from_iso8601("PT1M30S"), 90'000);
+  EXPECT_EQ(duration_ms_from_iso8601("PT0S"), 0);
+  EXPECT_EQ(duration_ms_from_iso8601("P2D"), 172'800'000);
+  for (const char* wrong : {"", "P", "PT", "1H", "PT1", "P1H", "PT1S1H", "-PT1H", "PT1H ", "PT1.5H", "PT9999999H"})
+    EXPECT_FALSE(duration_ms_from_iso8601(wrong)) << wrong;
+}
+
 }  // namespace
 }  // namespace thin

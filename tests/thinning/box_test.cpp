@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <map>
+
+#include "libthin/estimation/gme_grid.h"
 #include "libthin/observations/geodesy.h"
 #include "tests/support/random_observations.h"
 #include "tests/support/thinning.h"
@@ -24,6 +27,28 @@ TEST(Box, SpreadsOverTheDateLineLikeAnywhereElse) {
                       .source = {}},
                      west.values_of(i));
   EXPECT_EQ(test::retained(box, west), test::retained(box, turned));
+}
+
+TEST(Box, OnTheGmeGridRetainsTheNearestToEachVertex) {
+  for (const test::Region region : {test::Region{-90, 90, -180, 180}, test::Region{80, 90, 0, 360}})
+    for (const std::int64_t level : {0, 2, 4}) {
+      const ObservationSet set = test::random_observations(500, 1, 3, region);
+      const std::vector<Vector3> grid = gme_grid(static_cast<int>(level));
+      std::map<std::size_t, std::uint32_t> nearest_of;  // by vertex
+      for (std::uint32_t i = 0; i < set.size(); ++i) {
+        std::size_t vertex = 0;
+        for (std::size_t v = 1; v < grid.size(); ++v)
+          if (chord_km(set.position_km[i], grid[v]) < chord_km(set.position_km[i], grid[vertex])) vertex = v;
+        const auto [place, is_first] = nearest_of.try_emplace(vertex, i);
+        if (!is_first &&
+            chord_km(set.position_km[i], grid[vertex]) < chord_km(set.position_km[place->second], grid[vertex]))
+          place->second = i;
+      }
+      Retained expected;
+      for (const auto& [vertex, observation] : nearest_of) expected.push_back(observation);
+      std::sort(expected.begin(), expected.end());
+      EXPECT_EQ(test::retained(test::thinner("box", {{"grid", std::string("gme")}, {"level", level}}), set), expected);
+    }
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ TEST(Thinner, RetainsByPriority) {
 TEST(Thinner, KeepsEveryMethodsChoiceApart) {
   const ObservationSet set = test::random_observations(800, 2, 5);
   for (const MethodEntry& entry : thinning_methods()) {
-    Thinner thinner = test::thinner(entry.name, {{"retain_fraction", 0.3}});
+    Thinner thinner = test::thinner(entry.name, {{"retain_fraction", 0.3}, {"value_tolerance", 0.3}});
     OptionTable table;
     thinner.declare_options(table);
     const Option* option = table.find("min_separation_km");
