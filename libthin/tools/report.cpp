@@ -131,7 +131,7 @@ double rms_k(const EstimationError& error) {
 std::string table_row(const std::string& name, const SounderTally& tally, std::size_t retained,
                       const EstimationError& error) {
   const double share = error.empty_mean_squared_k2 > 0 ? error.mean_squared_k2 / error.empty_mean_squared_k2 : 0;
-  return fmt::format("{:<18} {:>12} {:>10} {:>9} {:>9} {:>12.4f} {:>10.4f} {:>9.1f}\n", name, tally.observations,
+  return fmt::format("{:<24} {:>12} {:>10} {:>9} {:>9} {:>12.4f} {:>10.4f} {:>9.1f}\n", name, tally.observations,
                      tally.duplicates(), tally.screened_count(), retained, error.mean_squared_k2, rms_k(error),
                      100 * share);
 }
@@ -181,7 +181,7 @@ std::string report_json(const WindowOutcome& outcome, const Settings& settings) 
 }
 
 std::string report_table(const WindowOutcome& outcome) {
-  std::string table = fmt::format("{:<18} {:>12} {:>10} {:>9} {:>9} {:>12} {:>10} {:>9}\n", "satellite", "observations",
+  std::string table = fmt::format("{:<24} {:>12} {:>10} {:>9} {:>9} {:>12} {:>10} {:>9}\n", "satellite", "observations",
                                   "duplicates", "screened", "retained", "E, K^2", "rms, K", "lost, %");
   for (const auto& [sounder, tally] : outcome.prepared.sounders) {
     const EstimationError* error = error_of(outcome, sounder);

@@ -33,8 +33,9 @@ TEST(Settings, NameFileLineAndRemedy) {
             "c.toml:4:15: thinning.line_offset must be less than step = 3, not 3");
   EXPECT_EQ(problem_of("[thinning]\nmethod = \"stepwise\"\n[preperation]\n"),
             "c.toml:3:2: unknown section [preperation]; did you mean [preparation]?");
-  EXPECT_NE(problem_of("[thinning]\nmethod = \"grid_eea\"\n").find("say how many to keep"), std::string::npos);
-  EXPECT_NE(problem_of("[thinning]\nretain_count = 3\nretain_fraction = 0.1\n").find("give one of the two"),
+  EXPECT_NE(problem_of("[thinning]\nmethod = \"grid_eea\"\n").find("needs retain_count or retain_fraction"),
+            std::string::npos);
+  EXPECT_NE(problem_of("[thinning]\nretain_count = 3\nretain_fraction = 0.1\n").find("exclude each other"),
             std::string::npos);
 }
 
