@@ -22,6 +22,7 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 // The tables of the layout.
 constexpr int kObstypeRadiances = 10;
 constexpr int kVarnoBrightnessTemperature = 119;
+constexpr double kMostChannels = 100000;
 constexpr int kStatePassive = 5, kStateRejected = 7, kStatePassiveRejected = 9;
 constexpr int kFlagThinned = 13;  // number of the bit, and of the check
 constexpr int kSurfaceLandBit = 1, kSurfaceSeaBit = 2, kSurfaceIceBit = 4;
@@ -62,6 +63,7 @@ struct Reports {
   std::vector<std::uint32_t> begin, end;           // in the body, from 0
   std::vector<Instrument> instrument;
   std::vector<bool> is_sounding;  // radiances of an instrument that is read here
+  std::vector<double> channel;    // of each entry of the body; NaN where it is no brightness temperature of a channel
   std::set<int> other_instruments;
 };
 
@@ -93,6 +95,13 @@ Result<Reports> read_reports(const NetcdfFile& file) {
   if (!obstype) return obstype.error();
   const auto varno = required(file, "varno", reports.body_length);
   if (!varno) return varno.error();
+  const auto level = required(file, "level", reports.body_length);
+  if (!level) return level.error();
+  for (std::size_t i = 0; i < varno->size(); ++i) {
+    const bool is_channel =
+        (*varno)[i] == kVarnoBrightnessTemperature && (*level)[i] >= 0 && (*level)[i] < kMostChannels;
+    reports.channel.push_back(is_channel ? (*level)[i] : kMissing);
+  }
   const auto instype = file.column("instype", reports.header_length);
   if (!instype) return instype.error();
   std::size_t in_reports = 0;
@@ -107,9 +116,10 @@ Result<Reports> read_reports(const NetcdfFile& file) {
     in_reports += static_cast<std::size_t>(count);
     if (in_reports > reports.body_count) return damaged(file, "whose reports share parts of the body");
     const Instrument instrument = instype->empty() ? Instrument::unknown : instrument_of((*instype)[i]);
-    const bool radiances = (*obstype)[i] == kObstypeRadiances &&
-                           std::any_of(varno->begin() + reports.begin[i], varno->begin() + reports.end[i],
-                                       [](double number) { return number == kVarnoBrightnessTemperature; });
+    const bool radiances =
+        (*obstype)[i] == kObstypeRadiances &&
+        std::any_of(reports.channel.begin() + reports.begin[i], reports.channel.begin() + reports.end[i],
+                    [](double channel) { return !std::isnan(channel); });
     const bool known = instype->empty() || instrument != Instrument::unknown;
     if (radiances && !known && !std::isnan((*instype)[i]))
       reports.other_instruments.insert(static_cast<int>((*instype)[i]));
@@ -134,17 +144,21 @@ class Reader {
     for (const auto step : {&Reader::read_header, &Reader::read_body, &Reader::choose_first_guess})
       if (Result<void> done = (this->*step)(); !done) return done.error();
     std::optional<ReadObservations> all;
+    std::vector<Error> problems;  // of an instrument without a usable report: the others are read
     for (const auto& [instrument, headers] : by_instrument) {
       Result<SoundingTable> table = table_of(instrument, headers);
       if (!table) return table.error();
       Result<ReadObservations> contents =
           observations_of(std::move(*table), feedback_layout().name(), options_, file_.name());
-      if (!contents) return contents.error();
-      if (all)
+      if (!contents)
+        problems.push_back(contents.error());
+      else if (all)
         join(std::move(*contents), *all);
       else
         all = std::move(*contents);
     }
+    if (!all) return problems.front();
+    for (const Error& problem : problems) all->skipped.push_back({0, 0, problem.message});
     return std::move(*all);
   }
 
@@ -190,13 +204,9 @@ class Reader {
   }
 
   Result<void> read_body() {
-    const std::pair<const char*, std::vector<double>*> columns[] = {
-        {"varno", &varno_}, {"obs", &observed_k_}, {"level", &channel_}};
-    for (const auto& [name, column] : columns) {
-      Result<std::vector<double>> values = required(file_, name, reports_.body_length);
-      if (!values) return values.error();
-      *column = std::move(*values);
-    }
+    Result<std::vector<double>> observed = required(file_, "obs", reports_.body_length);
+    if (!observed) return observed.error();
+    observed_k_ = std::move(*observed);
     for (const auto& [name, column] : {std::pair("bcor", &correction_k_), {"state", &state_}}) {
       Result<std::vector<double>> values = file_.column(name, reports_.body_length);
       if (!values) return values.error();
@@ -273,15 +283,13 @@ class Reader {
     return set & kSurfaceLandBit ? Surface::land : set & kSurfaceSeaBit ? Surface::sea : Surface::unknown;
   }
 
-  bool is_temperature(std::size_t i) const {
-    return varno_[i] == kVarnoBrightnessTemperature && channel_[i] >= 0 && channel_[i] < 100000;
-  }
+  bool is_temperature(std::size_t i) const { return !std::isnan(reports_.channel[i]); }
 
   Result<void> fill_values(SoundingTable& table, const std::vector<std::uint32_t>& headers) const {
     std::set<int> channels;
     for (const std::uint32_t header : headers)
       for (std::size_t i = reports_.begin[header]; i < reports_.end[header]; ++i)
-        if (is_temperature(i)) channels.insert(static_cast<int>(std::lround(channel_[i])));
+        if (is_temperature(i)) channels.insert(static_cast<int>(std::lround(reports_.channel[i])));
     table.channels.assign(channels.begin(), channels.end());
     if (table.locations > kMostNetcdfValues / std::max<std::size_t>(1, channels.size()))
       return damaged(file_, "with more reports and channels than any file has");
@@ -290,7 +298,8 @@ class Reader {
     for (std::size_t row = 0; row < headers.size(); ++row)
       for (std::size_t i = reports_.begin[headers[row]]; i < reports_.end[headers[row]]; ++i) {
         if (!is_temperature(i)) continue;
-        const auto place = std::lower_bound(table.channels.begin(), table.channels.end(), std::lround(channel_[i]));
+        const auto place =
+            std::lower_bound(table.channels.begin(), table.channels.end(), std::lround(reports_.channel[i]));
         const std::size_t at = row * channels.size() + static_cast<std::size_t>(place - table.channels.begin());
         // obs is corrected for bias already; as measured it is obs - bcor.
         const double correction_k = correction_k_.empty() || std::isnan(correction_k_[i]) ? 0 : correction_k_[i];
@@ -305,7 +314,7 @@ class Reader {
   Reports reports_;
   std::vector<double> latitude_deg_, longitude_deg_, time_s_, platform_, scan_line_, field_of_view_, surface_;
   std::map<std::string, std::vector<double>> variables_;
-  std::vector<double> varno_, observed_k_, channel_, correction_k_, state_, first_guess_k_;
+  std::vector<double> observed_k_, correction_k_, state_, first_guess_k_;
   std::vector<std::string> notes_;
 };
 

@@ -20,8 +20,7 @@ namespace {
 // Of the image that a classic file grows in. The file is as long as the image and holds what was in its memory before,
 // unless it had to grow there: netCDF clears what it adds.
 constexpr std::size_t kFirstClassicSize = 1;
-constexpr std::size_t kSlabBytes = std::size_t{1} << 28;  // of a variable in memory at a time
-constexpr unsigned kFirstOptionalFilter = 4;              // of HDF5's: 1 to 3 are deflate, shuffle and checksum
+constexpr unsigned kFirstOptionalFilter = 4;  // of HDF5's: 1 to 3 are deflate, shuffle and checksum
 
 int creation_mode(int format) {
   switch (format) {
@@ -62,8 +61,8 @@ void gather(const Selection& selection, std::size_t axis, const std::byte* from,
 
 class Rewriter {
  public:
-  Rewriter(const NetcdfFile& file, const NetcdfEdit& edit, const std::string& scratch_path)
-      : file_(file), edit_(edit), scratch_path_(scratch_path) {}
+  Rewriter(const NetcdfFile& file, const NetcdfEdit& edit, const std::string& scratch_path, std::size_t slab_bytes)
+      : file_(file), edit_(edit), scratch_path_(scratch_path), slab_bytes_(slab_bytes) {}
   ~Rewriter() {
     if (output_ >= 0) nc_abort(output_);
   }
@@ -297,58 +296,76 @@ class Rewriter {
     return selection;
   }
 
+  // Where a variable's values go: group and number in the new file, and its new shape.
+  struct Target {
+    int group = 0, id = 0;
+    std::vector<std::size_t> start, count;
+  };
+
   void copy_values(const NetcdfVariable& variable) {
     if (failed_ || variable.count() == 0) return;
-    const int to = groups_.at(variable.group), id = variables_.at({variable.group, variable.id});
-    const std::size_t rank = variable.lengths.size();
-    std::vector<std::size_t> start(rank, 0), count = variable.lengths, new_start(rank, 0), new_count;
-    for (const int dimension : variable.dimensions) new_count.push_back(lengths_.at(dimension));
+    Target target{groups_.at(variable.group), variables_.at({variable.group, variable.id}), {}, {}};
+    for (const int dimension : variable.dimensions) target.count.push_back(lengths_.at(dimension));
+    target.start.assign(target.count.size(), 0);
     const auto replacement = edit_.replaced.find(variable.path);
-    std::size_t new_values = 1;
-    for (const std::size_t length : new_count) new_values *= length;
-    if (replacement != edit_.replaced.end() && replacement->second.size() != new_values)
-      return check(NC_EEDGE, variable.path);
     if (replacement != edit_.replaced.end())
-      return check(nc_put_vara_double(to, id, new_start.data(), new_count.data(), replacement->second.data()),
-                   variable.path);
+      put_replaced(variable.path, target, replacement->second);
+    else
+      copy_slabs(variable, target);
+  }
 
+  void put_replaced(const std::string& path, const Target& target, const std::vector<double>& values) {
+    std::size_t wanted = 1;
+    for (const std::size_t length : target.count) wanted *= length;
+    if (values.size() != wanted) return check(NC_EEDGE, path);
+    check(nc_put_vara_double(target.group, target.id, target.start.data(), target.count.data(), values.data()), path);
+  }
+
+  // Slabs along the first axis; one for all but the largest variables, so that no chunk is packed twice.
+  void copy_slabs(const NetcdfVariable& variable, Target& target) {
     std::size_t value_bytes = 0;
     check(nc_inq_type(variable.group, variable.type, nullptr, &value_bytes), variable.path);
     if (failed_ || value_bytes == 0) return;
-    Selection selection = selection_of(variable, value_bytes);
-    // Slabs along the first axis; one for all but the largest variables, so that no chunk is packed twice.
-    const std::size_t rows = rank ? variable.lengths[0] : 1, row_bytes = variable.count() / rows * value_bytes;
-    const std::size_t slab_rows = std::max<std::size_t>(1, std::min(rows, kSlabBytes / row_bytes));
-    const std::vector<std::uint32_t> all =
-        selection.whole_from > 0 ? selection.entries[0] : std::vector<std::uint32_t>();
+    const bool scalar = variable.lengths.empty();
+    const std::size_t rows = scalar ? 1 : variable.lengths[0], row_bytes = variable.count() / rows * value_bytes;
+    const std::size_t slab_rows = std::max<std::size_t>(1, std::min(rows, slab_bytes_ / row_bytes));
+    const Selection selection = selection_of(variable, value_bytes);
+    std::vector<std::size_t> start(variable.lengths.size(), 0), count = variable.lengths;
     std::vector<std::byte> slab(slab_rows * row_bytes), retained(slab.size());
     for (std::size_t begin = 0; begin < rows && !failed_; begin += slab_rows) {
       const std::size_t taken = std::min(slab_rows, rows - begin);
-      std::size_t new_rows = taken;
-      if (selection.whole_from > 0) {
-        selection.entries[0].clear();
-        const auto first = std::lower_bound(all.begin(), all.end(), begin);
-        const auto last = std::lower_bound(first, all.end(), begin + taken);
-        for (auto entry = first; entry != last; ++entry)
-          selection.entries[0].push_back(static_cast<std::uint32_t>(*entry - begin));
-        new_rows = selection.entries[0].size();
-      } else {
-        selection.block_bytes = taken * row_bytes;
-      }
-      if (rank > 0) start[0] = begin, count[0] = taken;
+      if (!scalar) start[0] = begin, count[0] = taken;
       check(nc_get_vara(variable.group, variable.id, start.data(), count.data(), slab.data()), variable.path);
       if (failed_) return;
+      const Selection in_slab = rows_of(selection, begin, taken, row_bytes);
       std::byte* end = retained.data();
-      gather(selection, 0, slab.data(), end);
-      if (rank > 0) new_count[0] = new_rows;
+      gather(in_slab, 0, slab.data(), end);
+      if (!scalar) target.count[0] = in_slab.whole_from > 0 ? in_slab.entries[0].size() : taken;
       if (end != retained.data())
-        check(nc_put_vara(to, id, new_start.data(), new_count.data(), retained.data()), variable.path);
-      if (rank > 0) new_start[0] += new_rows;
+        check(nc_put_vara(target.group, target.id, target.start.data(), target.count.data(), retained.data()),
+              variable.path);
+      if (!scalar) target.start[0] += target.count[0];
       // Texts and lists of the slab lie elsewhere; the retained ones were the same.
       if (variable.type >= NC_STRING)
         check(nc_reclaim_data(variable.group, variable.type, slab.data(), taken * row_bytes / value_bytes),
               variable.path);
     }
+  }
+
+  // The part of a selection that lies in these rows of the first axis, counted from the first of them.
+  static Selection rows_of(const Selection& selection, std::size_t begin, std::size_t taken, std::size_t row_bytes) {
+    Selection part = selection;
+    if (selection.whole_from == 0) {
+      part.block_bytes = taken * row_bytes;
+      return part;
+    }
+    const std::vector<std::uint32_t>& all = selection.entries[0];
+    const auto first = std::lower_bound(all.begin(), all.end(), begin);
+    const auto last = std::lower_bound(first, all.end(), begin + taken);
+    part.entries[0].clear();
+    for (auto entry = first; entry != last; ++entry)
+      part.entries[0].push_back(static_cast<std::uint32_t>(*entry - begin));
+    return part;
   }
 
   Result<std::vector<std::uint8_t>> finish() {
@@ -367,6 +384,7 @@ class Rewriter {
   const NetcdfFile& file_;
   const NetcdfEdit& edit_;
   const std::string& scratch_path_;
+  std::size_t slab_bytes_;
   int output_ = -1;
   bool is_hdf5_ = false;
   bool failed_ = false;
@@ -390,8 +408,8 @@ bool changes_nothing(const NetcdfFile& file, const NetcdfEdit& edit) {
 }
 
 Result<std::vector<std::uint8_t>> rewrite_netcdf(const NetcdfFile& file, const NetcdfEdit& edit,
-                                                 const std::string& scratch_path) {
-  return Rewriter(file, edit, scratch_path).run();
+                                                 const std::string& scratch_path, std::size_t slab_bytes) {
+  return Rewriter(file, edit, scratch_path, slab_bytes).run();
 }
 
 }  // namespace thin

@@ -4,8 +4,8 @@
 // dimension, type, variable, attribute, fill value, byte order, chunking and filter stays, in the format of the
 // original. Values go through as they are stored, never through another type.
 //
-// What netCDF-C does not let a program choose differs: the version of HDF5's superblock, and the note of the library that
-// wrote the file (_NCProperties); texts and values of types of the file's own are not compressed, which netCDF
+// What netCDF-C does not let a program choose differs: the version of HDF5's superblock, and the note of the library
+// that wrote the file (_NCProperties); texts and values of types of the file's own are not compressed, which netCDF
 // refuses from 4.9 on. A chunk that is longer than its shrunken dimension becomes as short as that.
 
 #include <cstdint>
@@ -42,9 +42,11 @@ struct NetcdfEdit {
 bool changes_nothing(const NetcdfFile& file, const NetcdfEdit& edit);
 
 // The new file. The same file and edit give the same bytes, but where a file defines types of its own: HDF5 notes when
-// each was made. scratch_path: a name in a folder that can be written to; nothing is left there. Errors: input, where a
-// part of the original can't be decoded; temporary, where memory or disk is short; internal.
+// each was made. scratch_path: a name in a folder that can be written to; nothing is left there. slab_bytes: of a
+// variable that are in memory at a time, but for one row of its first dimension. Errors: input, where a part of the
+// original can't be decoded; temporary, where memory or disk is short; internal.
 Result<std::vector<std::uint8_t>> rewrite_netcdf(const NetcdfFile& file, const NetcdfEdit& edit,
-                                                 const std::string& scratch_path);
+                                                 const std::string& scratch_path,
+                                                 std::size_t slab_bytes = std::size_t{1} << 28);
 
 }  // namespace thin

@@ -58,7 +58,8 @@ std::vector<std::size_t> channel_order(const std::vector<int>& channels) {
 
 Result<ReadObservations> observations_of(SoundingTable table, const std::string& layout, const InputOptions& options,
                                          const std::string& name) {
-  if (!lengths_fit(table) || table.channels.empty())
+  if (table.channels.empty()) return Error{ErrorKind::input, name + ": it has no channel. Send soundings."};
+  if (!lengths_fit(table))
     return Error{ErrorKind::input, name + ": its variables differ in length. Ask the sender for it again."};
   ReadObservations contents;
   contents.layout = layout;

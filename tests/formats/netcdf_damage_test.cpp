@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <netcdf.h>
 
+#include <algorithm>
 #include <random>
 
 #include "libthin/formats/observation_file.h"
@@ -111,11 +112,32 @@ TEST_F(NetcdfDamageTest, FeedbackTablesThatLeadOutOfTheBody) {
     cdl.variable("short l_body(d_hdr)", {}, {2});
     cdl.variable("byte obstype(d_hdr)", {}, {10});
     cdl.variable("short varno(d_body)", {}, {119, 119});
+    cdl.variable("float level(d_body)", {}, {1, 2});
     return cdl.write(path("fof.nc"), "nc3");
   };
   expect_said(refused(file_with(2, "n_body = 2")), "n_hdr 2");
   expect_said(refused(file_with(1, "n_body = 3")), "n_body 3");
   expect_said(refused(file_with(1, "n_body = 2")), "outside of the body");
+}
+
+TEST_F(NetcdfDamageTest, ClassicHeadersThatNetcdfDoesNotSurviveAreRefusedFirst) {
+  const test::ByteVector whole = test::read_bytes(test::write_feedback(path("fof.nc")));
+  // CDF-2: magic, number of records, tag and length of the list of dimensions, length of the first name.
+  for (const std::size_t place : {std::size_t{12}, std::size_t{16}}) {
+    test::ByteVector changed = whole;
+    changed[place] = 0x9b;
+    const Error error = refused(scratch_.write("changed.nc", changed));
+    EXPECT_EQ(error.kind, ErrorKind::input);
+    expect_said(error, "makes no sense");
+  }
+  // The dimension of the records behind another one.
+  test::ByteVector swapped = whole;
+  const auto name = test::bytes_of("veri_data");
+  const auto found = std::search(swapped.begin(), swapped.end(), name.begin(), name.end());
+  ASSERT_NE(found, swapped.end());
+  const auto dimensions = found + 12 + 4;  // the padded name, the number of dimensions
+  std::swap_ranges(dimensions, dimensions + 4, dimensions + 4);
+  expect_said(refused(scratch_.write("swapped.nc", swapped)), "makes no sense");
 }
 
 TEST_F(NetcdfDamageTest, EveryByteChangedOnceIsReadOrRefusedAndDoesNotCrash) {

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "libthin/formats/netcdf_rewrite.h"
 #include "libthin/formats/observation_file.h"
 #include "tests/support/bufr_messages.h"
 #include "tests/support/extraction_checks.h"
@@ -325,6 +326,30 @@ TEST_F(NetcdfOutputsTest, TypesOfTheFilesOwnGoThrough) {
                            "list = {1, 2}, {4, 5, 6}", "latitude = 11, 13"})
     EXPECT_NE(dump.find(part), std::string::npos) << part << "\n" << dump;
   EXPECT_EQ(test::header_lines(output, false), test::header_lines(file, false));
+}
+
+TEST_F(NetcdfOutputsTest, LargeVariablesGoThroughInSlabs) {
+  for (const std::string& name : {test::write_ioda(path("a.nc4")), test::write_feedback(path("b.nc"))}) {
+    const test::ByteVector bytes = test::read_bytes(name);
+    const auto file = NetcdfFile::open(bytes, name);
+    ASSERT_TRUE(file.ok());
+    NetcdfEdit edit;
+    for (const char* dimension : {"Location", "d_body"}) {
+      int id = 0;
+      if (nc_inq_dimid(file->id(), dimension, &id) == NC_NOERR) edit.kept[id] = {1, 2, 17, 30};
+    }
+    const auto whole = rewrite_netcdf(*file, edit, path("scratch"));
+    ASSERT_TRUE(whole.ok()) << whole.error().message;
+    scratch_.write("whole.nc", *whole);
+    for (const std::size_t slab_bytes : {1, 100, 1000}) {
+      const auto slabs = rewrite_netcdf(*file, edit, path("scratch"), slab_bytes);
+      ASSERT_TRUE(slabs.ok()) << slabs.error().message;
+      scratch_.write("slabs.nc", *slabs);
+      test::expect_retained(path("whole.nc"), path("slabs.nc"), {});
+    }
+    test::expect_retained(name, path("whole.nc"), {{"Location", {1, 2, 17, 30}}, {"d_body", {1, 2, 17, 30}}});
+    EXPECT_FALSE(std::filesystem::exists(path("scratch")));
+  }
 }
 
 TEST_F(NetcdfOutputsTest, OthersCanAppendToTheOutput) {

@@ -7,6 +7,7 @@
 #include <netcdf_mem.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -45,6 +46,7 @@ void write_ioda_without_checksums(const std::string& path, bool packed) {
   NC_memio image = {};
   nc_close_memio(file, &image);
   std::ofstream(path, std::ios::binary).write(static_cast<const char*>(image.memory), static_cast<long>(image.size));
+  std::free(image.memory);
 }
 
 }  // namespace

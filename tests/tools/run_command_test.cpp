@@ -9,8 +9,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "libthin/formats/observation_file.h"
 #include "libthin/tools/commands.h"
 #include "tests/support/bufr_messages.h"
+#include "tests/support/netcdf_files.h"
 #include "tests/support/synthetic_files.h"
 
 namespace thin {
@@ -68,6 +70,32 @@ TEST_F(StepsTest, RunWritesThinnedFilesAndTheReport) {
   EXPECT_EQ(report["satellites"][0]["name"], "NOAA-15");
   EXPECT_EQ(report["configuration"]["thinning.retain_fraction"], "0.2");
   EXPECT_FALSE(report.contains("seconds"));
+}
+
+TEST_F(StepsTest, RunTakesInnovationsFromNetcdfAndFlagsWhereAskedTo) {
+  const std::string ioda = test::write_ioda(scratch_.path("amsua_n19.nc4"), {.locations = 200});
+  const auto settings = [&](const std::string& input) {
+    return write_text(scratch_.path("n.toml"),
+                      "[thinning]\nmethod = \"box\"\nhorizontal_mesh = 400\n[preparation]\n"
+                      "channels = [1, 2]\n" +
+                          input);
+  };
+  ASSERT_EQ(call({"run", "-c", settings(""), "-o", out_, ioda}).exit_status, 0);
+  const Json report = Json::parse(std::ifstream(out_ + "/report.json"));
+  EXPECT_EQ(report["values"], "innovations");
+  EXPECT_EQ(report["files"][0]["notes"][0], "innovations: ObsValue - hofx where PreQC is 0");
+  const int retained = report["files"][0]["retained"];
+  const auto subset = read_observations(out_ + "/amsua_n19.nc4");
+  ASSERT_TRUE(subset.ok()) << subset.error().message;
+  EXPECT_EQ(static_cast<int>(subset->observations.size()), retained);
+
+  ASSERT_EQ(call({"run", "-c", settings("[output]\nmode = \"flag\"\n[input]\nioda_quality = []\n"), "-o", out_, ioda})
+                .exit_status,
+            0);
+  const auto flagged = read_observations(out_ + "/amsua_n19.nc4");
+  ASSERT_TRUE(flagged.ok()) << flagged.error().message;
+  EXPECT_EQ(flagged->observations.size(), 200U);
+  EXPECT_EQ(Json::parse(std::ifstream(out_ + "/report.json"))["files"][0]["notes"][0], "innovations: ObsValue - hofx");
 }
 
 TEST_F(StepsTest, RunSaysThreeWhereAFileWasRefusedAndStillThinsTheOthers) {
