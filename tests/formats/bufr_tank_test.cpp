@@ -231,6 +231,18 @@ TEST(BufrTank, TablesAloneAreNotWritten) {
   EXPECT_FALSE(std::filesystem::exists(folder.path("out")));
 }
 
+// Numbers that no integer holds, and scales that leave no number: found by the search of tests/fuzz.
+TEST(BufrTank, SenselessScalesAreNoSoundings) {
+  const ByteVector data = tank_data_message(tank_soundings(4, kAmsuA), kAmsuA);
+  for (const int scale : {-12, -300, 300}) {
+    test::TankTables tables = tank_tables(kAmsuA);
+    tables.elements[0].scale = scale;  // the year's
+    const auto contents = read_bufr(test::joined({tank_table_message(tables), data}), "tank");
+    ASSERT_FALSE(contents.ok());
+    EXPECT_EQ(contents.error().kind, ErrorKind::input);
+  }
+}
+
 // Sequences that hold themselves, or one another many times over.
 TEST(BufrTank, TablesWithoutEndAreRefused) {
   test::TankTables endless = tank_tables(kAmsuA);
