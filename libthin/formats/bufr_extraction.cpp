@@ -44,13 +44,16 @@ class Extraction {
   Result<ExtractionSummary> run(std::span<const SourceReference> retained) {
     const auto subsets = by_message(retained, scan_, name_);
     if (!subsets) return subsets.error();
-    for (const Bulletin& bulletin : scan_.bulletins)
-      if (const Result<void> added = add_bulletin(bulletin, *subsets); !added) return added.error();
-    // Tables are written for the data behind them, never alone.
-    if (summary_.messages == tables_written_) summary_.messages = 0;
+    for (std::size_t number = 0; number < scan_.messages.size(); ++number) {
+      Result<Part> part = part_of(scan_.messages[number], (*subsets)[number]);
+      if (!part) return part.error();
+      parts_.push_back(std::move(*part));
+    }
+    leave_out_tables_without_data();
+    for (const Bulletin& bulletin : scan_.bulletins) add_bulletin(bulletin);
     if (summary_.messages > 0 && scan_.has_end_marker && keep_headers())
       output_.insert(output_.end(), kGtsLengthPrefixSize, '0');
-    summary_.bytes = summary_.messages > 0 ? output_.size() : 0;
+    summary_.bytes = output_.size();
     return summary_;
   }
 
@@ -59,73 +62,87 @@ class Extraction {
   const BufrScan& scan() const { return scan_; }
 
  private:
+  // What is written of one message.
+  struct Part {
+    bool is_written = false;
+    std::size_t retained = 0;          // subsets that were asked for
+    std::size_t subsets = 0;           // that are written
+    std::vector<std::uint8_t> packed;  // empty: the message as it came
+  };
+
   bool keep_headers() const { return options_.gts_headers == OutputOptions::GtsHeaders::keep; }
 
   void append(Bytes bytes) { output_.insert(output_.end(), bytes.begin(), bytes.end()); }
 
-  // The envelope is written around what is left of its messages; where nothing is, not at all.
-  Result<void> add_bulletin(const Bulletin& bulletin, const std::vector<std::vector<std::uint32_t>>& subsets) {
-    const std::size_t begin = output_.size();
-    if (keep_headers()) append(original_.subspan(bulletin.heading_offset, bulletin.heading_size));
-    const std::size_t messages_begin = output_.size();
-    for (std::size_t i = 0; i < bulletin.message_count; ++i) {
-      const std::size_t number = bulletin.first_message + i;
-      if (Result<void> added = add_message(scan_.messages[number], subsets[number]); !added) return added;
-    }
-    if (output_.size() == messages_begin) {
-      output_.resize(begin);
-      return {};
-    }
-    if (keep_headers()) append(original_.subspan(bulletin.trailer_offset, bulletin.trailer_size));
-    if (keep_headers() && bulletin.has_length_prefix) put_gts_length(std::span(output_).subspan(begin));
-    return {};
-  }
+  Bytes bytes_of(const BufrMessage& message) const { return original_.subspan(message.offset, message.length); }
 
-  Result<void> add_message(const BufrMessage& message, const std::vector<std::uint32_t>& subsets) {
-    const Bytes bytes = original_.subspan(message.offset, message.length);
-    const bool is_tables = message.header.data_category == kTablesCategory;
-    if (!is_tables && subsets.size() == static_cast<std::size_t>(message.header.subset_count) && !subsets.empty()) {
+  Result<Part> part_of(const BufrMessage& message, const std::vector<std::uint32_t>& subsets) {
+    const auto count = static_cast<std::size_t>(message.header.subset_count);
+    const Part as_it_came = {.is_written = true, .retained = subsets.size(), .subsets = count, .packed = {}};
+    if (!is_tables(message) && subsets.size() == count && !subsets.empty()) {
       tables_.pass_data();
-      add_verbatim(message);
-      summary_.subsets += subsets.size();
-      return {};
+      return as_it_came;
     }
-    const SoundingMessage soundings = open_soundings(bytes, message.header, tables_);
-    if (soundings.state == SoundingMessage::State::tables) {
-      add_verbatim(message);
-      ++tables_written_;
-      return {};
-    }
+    const SoundingMessage soundings = open_soundings(bytes_of(message), message.header, tables_);
+    // Tables that can't be read stay, too: without them others would be in force for the data behind.
+    if (is_tables(message)) return as_it_came;
     if (subsets.empty()) {
       const bool keep = options_.other_messages == OutputOptions::OtherMessages::keep;
-      if (soundings.state == SoundingMessage::State::other_kind && keep) add_verbatim(message);
-      return {};
+      return soundings.state == SoundingMessage::State::other_kind && keep ? as_it_came : Part{};
     }
     if (soundings.state != SoundingMessage::State::soundings)
       return Error{ErrorKind::input, where(message) + soundings.reason + ". The file has changed since it was read."};
-    return add_subsets(message, soundings.data, subsets);
+    return some_subsets(message, soundings.data, subsets);
   }
 
-  void add_verbatim(const BufrMessage& message) {
-    append(original_.subspan(message.offset, message.length));
-    ++summary_.messages;
-    subsets_written_ += static_cast<std::uint64_t>(message.header.subset_count);
-  }
-
-  Result<void> add_subsets(const BufrMessage& message, const BufrData& data,
-                           const std::vector<std::uint32_t>& subsets) {
-    const Bytes bytes = original_.subspan(message.offset, message.length);
-    std::vector<std::uint8_t> extracted = extract_subsets(bytes, message.header, data, subsets);
-    const Result<BufrHeader> header = parse_bufr_header(extracted);
+  Result<Part> some_subsets(const BufrMessage& message, const BufrData& data,
+                            const std::vector<std::uint32_t>& subsets) {
+    Part part = {.is_written = true,
+                 .retained = subsets.size(),
+                 .subsets = subsets.size(),
+                 .packed = extract_subsets(bytes_of(message), message.header, data, subsets)};
+    const Result<BufrHeader> header = parse_bufr_header(part.packed);
     if (!header || header->subset_count != static_cast<int>(subsets.size()))
       return Error{ErrorKind::internal, where(message) + "something else was extracted than the subsets asked for"};
-    correct_ecmwf_section2(bytes, message.header, extracted, *header);
-    append(extracted);
-    ++summary_.messages;
-    summary_.subsets += subsets.size();
-    subsets_written_ += subsets.size();
-    return {};
+    correct_ecmwf_section2(bytes_of(message), message.header, part.packed, *header);
+    return part;
   }
+
+  // Tables are written for the data behind them, never alone. So no two sets of tables, whose data were all left out
+  // between them, become one.
+  void leave_out_tables_without_data() {
+    bool has_data = false;
+    bool behind_is_data = true;
+    for (std::size_t i = parts_.size(); i-- > 0;) {
+      const bool tables = is_tables(scan_.messages[i]);
+      if (!tables && behind_is_data) has_data = has_data || parts_[i].is_written;
+      if (!tables && !behind_is_data) has_data = parts_[i].is_written;
+      if (tables) parts_[i].is_written = has_data;
+      behind_is_data = !tables;
+    }
+  }
+
+  // The envelope is written around what is left of its messages; where nothing is, not at all.
+  void add_bulletin(const Bulletin& bulletin) {
+    const std::size_t begin = output_.size();
+    if (keep_headers()) append(original_.subspan(bulletin.heading_offset, bulletin.heading_size));
+    const std::size_t messages_begin = output_.size();
+    for (std::size_t i = 0; i < bulletin.message_count; ++i) add_part(bulletin.first_message + i);
+    if (output_.size() == messages_begin) return output_.resize(begin);
+    if (keep_headers()) append(original_.subspan(bulletin.trailer_offset, bulletin.trailer_size));
+    if (keep_headers() && bulletin.has_length_prefix) put_gts_length(std::span(output_).subspan(begin));
+  }
+
+  void add_part(std::size_t number) {
+    const Part& part = parts_[number];
+    if (!part.is_written) return;
+    append(part.packed.empty() ? bytes_of(scan_.messages[number]) : Bytes(part.packed));
+    ++summary_.messages;
+    summary_.subsets += part.retained;
+    subsets_written_ += part.subsets;
+  }
+
+  static bool is_tables(const BufrMessage& message) { return message.header.data_category == kTablesCategory; }
 
   std::string where(const BufrMessage& message) const {
     return name_ + ": message at byte " + std::to_string(message.offset) + ": ";
@@ -135,10 +152,10 @@ class Extraction {
   const std::string& name_;
   const OutputOptions& options_;
   BufrScan scan_;
-  std::vector<std::uint8_t> output_;
   BufrFileTables tables_;
+  std::vector<Part> parts_;  // of each message
+  std::vector<std::uint8_t> output_;
   ExtractionSummary summary_;
-  std::uint32_t tables_written_ = 0;
   std::uint64_t subsets_written_ = 0;  // with those of other kinds
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "libthin/formats/bufr_sounders.h"
 
@@ -60,6 +61,11 @@ BufrColumn column_of(const BufrData& data, const AlikeSubsets& group, std::span<
   for (const int descriptor : elements)
     if (find_field(group, descriptor)) return column_of(data, group, descriptor);
   return {};
+}
+
+std::int32_t number_or_unknown(double value) {
+  constexpr double kLargest = std::numeric_limits<std::int32_t>::max();
+  return value >= 0 && value <= kLargest ? static_cast<std::int32_t>(value) : kUnknownNumber;
 }
 
 std::string ambiguous_place(const AlikeSubsets& group) {

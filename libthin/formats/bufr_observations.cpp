@@ -40,15 +40,12 @@ Places read_places(const BufrData& data, const AlikeSubsets& group) {
 }
 
 std::optional<std::int64_t> time_of(const std::array<BufrColumn, 6>& clock, std::size_t subset) {
-  for (const BufrColumn& column : clock)
-    if (std::isnan(column[subset])) return std::nullopt;
-  const auto whole = [&](int part) { return static_cast<int>(clock[static_cast<std::size_t>(part)][subset]); };
-  return to_time_ms({whole(0), whole(1), whole(2), whole(3), whole(4), clock[5][subset]});
-}
-
-std::int32_t number_or_unknown(double value) {
-  constexpr double kLargest = std::numeric_limits<std::int32_t>::max();
-  return value >= 0 && value <= kLargest ? static_cast<std::int32_t>(value) : kUnknownNumber;
+  constexpr int kLastYear = 9999;
+  const double second = clock[5][subset];
+  // Of the others what is missing is out of range.
+  const auto whole = [&](int part) { return number_or_unknown(clock[static_cast<std::size_t>(part)][subset]); };
+  if (std::isnan(second) || whole(0) == kUnknownNumber || whole(0) > kLastYear) return std::nullopt;
+  return to_time_ms({whole(0), whole(1), whole(2), whole(3), whole(4), second});
 }
 
 // BUFR holds 90 degrees as 9,000,000 hundred-thousandths, which decode to 90.00000000000001: a value that is over the

@@ -48,7 +48,7 @@ void find_instruments(const BufrData& data, const AlikeSubsets& group, bool is_a
   std::vector<BufrColumn> channels;
   for (std::size_t subset = 0; subset < group.count; ++subset) {
     if (!std::isnan(sensor[subset])) {
-      into.push_back(instrument_of(sounder_of_sensor(static_cast<int>(sensor[subset]))));
+      into.push_back(instrument_of(sounder_of_sensor(number_or_unknown(sensor[subset]))));
     } else if (!std::isnan(satellite_instrument[subset])) {
       into.push_back(instrument_of_number(satellite_instrument[subset]));
     } else if (is_atms) {
@@ -74,8 +74,8 @@ MessageKind other_instrument(const BufrData& data) {
   const AlikeSubsets& group = data.groups().front();
   const double sensor = column_of(data, group, kSensorElement)[0];
   const double number = column_of(data, group, kSatelliteInstrumentElement)[0];
-  if (!std::isnan(sensor)) return {sensor_name(static_cast<int>(sensor)), other_sensor_remedy()};
-  if (!std::isnan(number)) return {satellite_instrument_name(static_cast<int>(number)), other_sensor_remedy()};
+  if (!std::isnan(sensor)) return {sensor_name(number_or_unknown(sensor)), other_sensor_remedy()};
+  if (!std::isnan(number)) return {satellite_instrument_name(number_or_unknown(number)), other_sensor_remedy()};
   return {"soundings of an unnamed instrument", other_sensor_remedy()};
 }
 

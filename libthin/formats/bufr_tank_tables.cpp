@@ -102,14 +102,18 @@ class Entries {
 }  // namespace
 
 Result<void> BufrFileTables::take(std::span<const std::uint8_t> message, const BufrHeader& header) {
-  if (behind_data_) own_.reset();
+  std::shared_ptr<BufrTables> own = behind_data_ ? nullptr : std::move(own_);
+  own_.reset();
   behind_data_ = false;
   in_force_.reset();
-  if (header.subset_count == 0) return {};
+  if (header.subset_count == 0) {
+    own_ = std::move(own);
+    return {};
+  }
   if (header.compressed) return Error{ErrorKind::input, "its tables are compressed, which is not read"};
   const Result<BufrData> data = BufrData::walk(message, header, *tables_of_tables());
   if (!data) return data.error();
-  if (!own_) own_ = std::make_shared<BufrTables>();
+  own_ = own ? std::move(own) : std::make_shared<BufrTables>();
   Entries entries(*own_);
   for (const AlikeSubsets& group : data->groups())
     for (std::size_t subset = 0; subset < group.count; ++subset)

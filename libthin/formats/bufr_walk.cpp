@@ -213,6 +213,9 @@ Result<void> BufrWalk::described_element(int descriptor, const BufrElement& elem
     field.width = static_cast<unsigned>(width);
     scale += now_.added_scale + now_.raised_by;
   }
+  constexpr int kLargestScale = 40;  // keeps every value finite
+  if (std::abs(scale) > kLargestScale)
+    return unreadable(fmt::format("element {:06} has the scale {}", descriptor, scale));
   field.factor = factor_of(scale);
   return add(field);
 }

@@ -196,12 +196,51 @@ TEST(BufrTank, ItsOwnTablesSufficeWhereEcCodesLacksWmos) {
   }
 }
 
+// Of three tanks in one file the first is left out as a whole, and tables that can't be read stay where they were: what
+// is in force for the data that are left stays the same.
+TEST(BufrTank, ExtractionsKeepTablesAndDataTogether) {
+  const TankShape one, other = {.temperature_width = 19, .temperature_scale = 3};
+  ByteVector damaged = tank_table_message(tank_tables(one));
+  damaged[8 + 18 + 7 + 30 + 1 + 4 + 1] = 0xff;  // entries of table B
+  const ByteVector lost = tank_data_message(tank_soundings(40, one), one);
+  const ByteVector file = test::joined({tank(one), tank(other), damaged, lost});
+  const ScratchFolder folder;
+  const auto before = read_observations(folder.write("tank", file));
+  ASSERT_TRUE(before.ok()) << before.error().message;
+  ASSERT_EQ(before->observations.size(), 160U);
+  EXPECT_EQ(before->skipped.size(), 2U);
+
+  std::vector<SourceReference> retained;
+  for (std::size_t i = 80; i < 160; i += 2) retained.push_back(before->observations.source[i]);
+  const auto summary = extract_observations(folder.path("tank"), retained, folder.path("out"), {});
+  ASSERT_TRUE(summary.ok()) << summary.error().message;
+  const auto after = read_observations(folder.path("out"));
+  ASSERT_TRUE(after.ok()) << after.error().message;
+  ASSERT_EQ(after->observations.size(), 40U);
+  for (std::size_t i = 0; i < 40; ++i)
+    for (std::size_t channel = 0; channel < 15; ++channel)
+      EXPECT_TRUE(test::same_number(after->observations.values_of(i)[channel],
+                                    before->observations.values_of(80 + 2 * i)[channel]));
+}
+
 TEST(BufrTank, TablesAloneAreNotWritten) {
   const ScratchFolder folder;
   const auto summary = extract_observations(folder.write("tank", tank(kMhs)), {}, folder.path("out"), {});
   ASSERT_TRUE(summary.ok());
   EXPECT_EQ(summary->messages, 0U);
   EXPECT_FALSE(std::filesystem::exists(folder.path("out")));
+}
+
+// Numbers that no integer holds, and scales that leave no number: found by the search of tests/fuzz.
+TEST(BufrTank, SenselessScalesAreNoSoundings) {
+  const ByteVector data = tank_data_message(tank_soundings(4, kAmsuA), kAmsuA);
+  for (const int scale : {-12, -300, 300}) {
+    test::TankTables tables = tank_tables(kAmsuA);
+    tables.elements[0].scale = scale;  // the year's
+    const auto contents = read_bufr(test::joined({tank_table_message(tables), data}), "tank");
+    ASSERT_FALSE(contents.ok());
+    EXPECT_EQ(contents.error().kind, ErrorKind::input);
+  }
 }
 
 // Sequences that hold themselves, or one another many times over.

@@ -7,6 +7,7 @@
 
 #include "libthin/formats/bufr_file.h"
 #include "tests/support/bufr_messages.h"
+#include "tests/support/tank_writer.h"
 
 namespace thin {
 namespace {
@@ -39,8 +40,12 @@ std::vector<ByteVector> files() {
   const ByteVector long_form =
       make_message(test_soundings(5), {.edition = 3, .descriptors = {310008}, .slots_per_subset = 19});
   const ByteVector local = make_message(test_soundings(6), {.ecmwf_section2 = true});
-  return {compressed, uncompressed, long_form, local,
-          test::joined({test::bulletin(compressed), test::bytes_of("junk"), test::bulletin(uncompressed)})};
+  const test::TankShape shape = {.channels = 3, .counted_channels = true};
+  const ByteVector tank =
+      test::joined({tank_table_message(tank_tables(shape)), tank_data_message(test::tank_soundings(9, shape), shape)});
+  return {compressed, uncompressed,
+          long_form,  local,
+          tank,       test::joined({test::bulletin(compressed), test::bytes_of("junk"), test::bulletin(uncompressed)})};
 }
 
 TEST(Damage, CutAtEveryByte) {
