@@ -1,0 +1,18 @@
+#pragma once
+
+// Elevation maps as a mesh or as points (thesis, 3.3.4). Samples come patch by patch, row by row, so that vertex i of
+// the mesh is point i of the point set.
+
+#include "libemap/elevation/elevation_map.h"
+#include "libemap/surface/surface.h"
+
+namespace emap {
+
+// Every square of four supported samples becomes two triangles along its shorter diagonal, every three supported samples
+// of a square one triangle. Patches are not connected.
+Mesh canonical_mesh(const ElevationMaps& maps);
+
+// All samples with normals from the elevations' differences.
+PointSet sample_points(const ElevationMaps& maps);
+
+}  // namespace emap
