@@ -30,16 +30,28 @@ class Finishing {
     const std::vector<std::uint32_t> interiors = fixed_interiors(coarsening, rough);
     flood(graph_, {.aperture_cosine = aperture_cosine_, .fixed = interiors}, sheets_, patch_of_);
     flood(graph_, {.aperture_cosine = aperture_cosine_}, sheets_, patch_of_);
+    report("flood");
     absorb_scraps();
+    report("absorb");
     while (add_patches_for_leftovers()) {
       flood(graph_, {.aperture_cosine = aperture_cosine_}, sheets_, patch_of_);
       absorb_scraps();
+      report("more");
     }
     if (options_.optimise_boundaries) optimise_boundaries(graph_, aperture_cosine_, sheets_, patch_of_);
     return partition();
   }
 
  private:
+  void report(const char* what) {
+    if (!getenv("EMAP_DEBUG")) return;
+    auto c = components_of(graph_, patch_of_, kNoPatch);
+    double a = 0;
+    std::size_t n = 0, big = 0;
+    for (auto& x : c) a += x.area, n += x.elements.size(), big += x.elements.size() > kScrapElements;
+    fprintf(stderr, "%s: planes %zu; left %zu in %zu components (%zu big), area %.4f%%\n", what, sheets_.patch_count(),
+            n, c.size(), big, 100 * a / graph_.total_area());
+  }
   void add_planes(const Coarsening& coarsening, const RoughPartition& rough) {
     std::vector<std::vector<Eigen::Vector3d>> normals(rough.normals.size());
     for (std::size_t i = 0; i < graph_.size(); ++i)

@@ -6,6 +6,7 @@
 #include "libemap/partition/coarsening.h"
 #include "libemap/partition/finishing.h"
 #include "libemap/partition/lloyd_partition.h"
+#include "libemap/partition/patch_merging.h"
 #include "libemap/surface/bounding_box.h"
 
 namespace emap {
@@ -31,8 +32,15 @@ Partition partition_elements(const ElementGraph& graph, const Footprints& footpr
   const double group_size = mean_element_size(coarsening.graph);
   const DiscFootprints discs(coarsening.graph, origin, kCoarseCells * group_size,
                              options.strict ? kCoarseTolerance * group_size : std::numeric_limits<double>::infinity());
-  const RoughPartition rough = lloyd_partition(
+  const RoughPartition seeded = lloyd_partition(
       coarsening.graph, discs, {.aperture_degrees = options.aperture_degrees, .least_patches = options.least_patches});
+  const RoughPartition rough = merge_patches(coarsening.graph, discs, seeded,
+                                             {.aperture_degrees = options.aperture_degrees,
+                                              .least_patches = static_cast<std::size_t>(options.least_patches),
+                                              .strict = options.strict});
+  if (getenv("EMAP_DEBUG"))
+    fprintf(stderr, "groups %zu seeded %zu merged %zu\n", coarsening.graph.size(), seeded.seeds.size(),
+            rough.seeds.size());
   return finish_partition(
       graph, footprints, coarsening, rough,
       {.aperture_degrees = options.aperture_degrees, .optimise_boundaries = options.optimise_boundaries});
