@@ -23,6 +23,7 @@ struct Candidate {
   double score;
   std::uint32_t from, to;  // boundary edge, in the direction of its triangle
   std::uint32_t tip;
+  double reach;
 
   // For a queue that hands out the least score first; ties by the vertices.
   bool operator<(const Candidate& other) const {
@@ -47,7 +48,8 @@ class GapFiller {
     file_vertices(boundary);
     file_surroundings();
     const std::size_t triangles_before = mesh_.triangles.size();
-    for (const BoundaryEdge& edge : boundary) propose(edge.from, edge.to, edge.opposite);
+    for (const BoundaryEdge& edge : boundary)
+      propose(edge.from, edge.to, edge.opposite, reach_of((at(edge.from) - at(edge.to)).norm()));
     while (!candidates_.empty()) {
       const Candidate candidate = candidates_.top();
       candidates_.pop();
@@ -76,7 +78,7 @@ class GapFiller {
   void file_surroundings() {
     CubeHash near(2 * spacing_);
     for (std::uint32_t vertex = 0; vertex < boundary_degree_.size(); ++vertex)
-      if (boundary_degree_[vertex] > 0) near.mark(at(vertex).array() - reach_of(0), at(vertex).array() + reach_of(0));
+      if (boundary_degree_[vertex] > 0) near.mark(at(vertex).array() - 3 * spacing_, at(vertex).array() + 3 * spacing_);
     for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
       const Triangle& triangle = mesh_.triangles[i];
       const auto [low, high] = box_of(triangle);
@@ -87,7 +89,8 @@ class GapFiller {
     }
   }
 
-  double reach_of(double side) const { return options_.reach * std::max(spacing_, side); }
+  // On steep slopes samples, and gaps, are wider than the spacing.
+  double reach_of(double side) const { return options_.reach * std::max(spacing_, side / 2); }
 
   std::pair<Eigen::Vector3d, Eigen::Vector3d> box_of(const Triangle& triangle) const {
     return {at(triangle[0]).cwiseMin(at(triangle[1])).cwiseMin(at(triangle[2])),
@@ -99,25 +102,22 @@ class GapFiller {
   }
 
   // The best tips for triangles on the free side of the edge into the queue. opposite: the third corner of the triangle
-  // that it bounds.
-  void propose(std::uint32_t from, std::uint32_t to, std::uint32_t opposite) {
+  // that it bounds. reach: of the triangle's sides; not of the edge's own length, or wide holes would close step by
+  // step.
+  void propose(std::uint32_t from, std::uint32_t to, std::uint32_t opposite, double reach) {
     const Eigen::Vector3d middle = (at(from) + at(to)) / 2;
     const Eigen::Vector3d normal = normal_of(from, to, opposite);
-    const double reach = search_reach(from, to);
     found_.clear();
     vertices_.visit(middle.array() - reach, middle.array() + reach, [&](std::uint32_t tip) {
       if (tip == from || tip == to || boundary_degree_[tip] == 0) return;
       const double score = score_of(from, to, tip, normal, reach);
-      if (std::isfinite(score)) found_.push_back({score, from, to, tip});
+      if (std::isfinite(score)) found_.push_back({score, from, to, tip, reach});
     });
     const auto best_first = [](const Candidate& a, const Candidate& b) { return b < a; };
     const std::size_t kept = std::min(kCandidatesPerEdge, found_.size());
     std::partial_sort(found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(kept), found_.end(), best_first);
     for (std::size_t i = 0; i < kept; ++i) candidates_.push(found_[i]);
   }
-
-  // Wide searches are slow: as wide as the gap of a spacing or two asks for, and only then as wide as allowed.
-  double search_reach(std::uint32_t from, std::uint32_t to) const { return reach_of((at(from) - at(to)).norm()) / 2; }
 
   // Small where the triangle is small and goes on flat; infinite where it is out of reach, folds back or is a line.
   double score_of(std::uint32_t from, std::uint32_t to, std::uint32_t tip, const Eigen::Vector3d& normal,
@@ -161,8 +161,9 @@ class GapFiller {
     take_side(candidate.to, candidate.from);
     take_side(candidate.from, candidate.tip);
     take_side(candidate.tip, candidate.to);
-    if (is_boundary(candidate.from, candidate.tip)) propose(candidate.from, candidate.tip, candidate.to);
-    if (is_boundary(candidate.tip, candidate.to)) propose(candidate.tip, candidate.to, candidate.from);
+    if (is_boundary(candidate.from, candidate.tip))
+      propose(candidate.from, candidate.tip, candidate.to, candidate.reach);
+    if (is_boundary(candidate.tip, candidate.to)) propose(candidate.tip, candidate.to, candidate.from, candidate.reach);
   }
 
   // The side gets its triangle: it closes an open edge, or opens one.
