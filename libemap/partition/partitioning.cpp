@@ -1,5 +1,6 @@
 #include "libemap/partition/partitioning.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,6 +9,7 @@
 #include "libemap/partition/islands.h"
 #include "libemap/partition/lloyd_partition.h"
 #include "libemap/partition/patch_merging.h"
+#include "libemap/partition/split_merge.h"
 #include "libemap/surface/bounding_box.h"
 
 namespace emap {
@@ -29,6 +31,20 @@ double mean_element_size(const ElementGraph& graph) {
 constexpr std::size_t kIslandElements = 64;  // unconnected parts of at most so many elements are linked
 constexpr double kIslandReach = 8;           // to what lies within so many element sizes
 
+RoughPartition rough_partition(const ElementGraph& groups, const Footprints& discs, const PartitionOptions& options) {
+  if (options.method == PartitionMethod::split_merge)
+    return split_merge_partition(groups, discs,
+                                 {.split_degrees = std::min(options.split_degrees, options.aperture_degrees),
+                                  .aperture_degrees = options.aperture_degrees,
+                                  .strict = options.strict});
+  RoughPartition seeded = lloyd_partition(
+      groups, discs, {.aperture_degrees = options.aperture_degrees, .least_patches = options.least_patches});
+  return merge_patches(groups, discs, std::move(seeded),
+                       {.aperture_degrees = options.aperture_degrees,
+                        .least_patches = static_cast<std::size_t>(options.least_patches),
+                        .strict = options.strict});
+}
+
 Partition partition_elements(const ElementGraph& graph, const Footprints& footprints, const BoundingBox& box,
                              const PartitionOptions& options) {
   const Eigen::Vector3d origin = (box.minimum + box.maximum) / 2;
@@ -36,12 +52,7 @@ Partition partition_elements(const ElementGraph& graph, const Footprints& footpr
   const double group_size = mean_element_size(coarsening.graph);
   const DiscFootprints discs(coarsening.graph, origin, kCellSize * group_size,
                              options.strict ? kDiscTolerance * group_size : std::numeric_limits<double>::infinity());
-  const RoughPartition seeded = lloyd_partition(
-      coarsening.graph, discs, {.aperture_degrees = options.aperture_degrees, .least_patches = options.least_patches});
-  const RoughPartition rough = merge_patches(coarsening.graph, discs, seeded,
-                                             {.aperture_degrees = options.aperture_degrees,
-                                              .least_patches = static_cast<std::size_t>(options.least_patches),
-                                              .strict = options.strict});
+  const RoughPartition rough = rough_partition(coarsening.graph, discs, options);
   const double scrap_error = options.strict ? options.scrap_error * box.diagonal() : 0;
   return finish_partition(graph, footprints, coarsening, rough,
                           {.aperture_degrees = options.aperture_degrees,
