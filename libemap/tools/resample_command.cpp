@@ -11,6 +11,7 @@
 #include "libemap/elevation/base_plane.h"
 #include "libemap/elevation/canonical_mesh.h"
 #include "libemap/elevation/gap_filling.h"
+#include "libemap/elevation/least_squares.h"
 #include "libemap/elevation/resampling.h"
 #include "libemap/partition/partitioning.h"
 #include "libemap/surface/model_file.h"
@@ -26,7 +27,7 @@ struct ResampleArguments {
   std::string input, output;
   PartitionArguments partition;
   double mu = 1;
-  bool open = false, as_points = false;
+  bool open = false, as_points = false, fit = false;
   GapFillingOptions filling;
 };
 
@@ -60,8 +61,12 @@ int resample_as_mesh(const ResampleArguments& arguments) {
   watch.say("partition");
   const std::vector<BasePlane> planes = base_planes(*mesh, *partition);
   const double spacing = spacing_for_resolution(*mesh, *partition, planes, arguments.mu);
-  const ElevationMaps maps = resample_mesh(*mesh, *partition, planes, spacing);
+  ElevationMaps maps = resample_mesh(*mesh, *partition, planes, spacing);
   watch.say("resample");
+  if (arguments.fit) {
+    fit_elevations(resample_mesh(*mesh, *partition, planes, fitting_spacing(spacing)), maps);
+    watch.say("fit");
+  }
   const ClosedMesh closed =
       arguments.open ? ClosedMesh{canonical_mesh(maps), {}} : closed_mesh(maps, arguments.filling);
   watch.say("mesh");
@@ -112,6 +117,7 @@ void add_resample_command(CLI::App& program, Action& action) {
   command->add_option("--reach", arguments->filling.reach, "Widest gap to close, in sampling intervals [3]")
       ->check(CLI::PositiveNumber);
   command->add_flag("--points", arguments->as_points, "Take the vertices alone, and write samples");
+  command->add_flag("--fit", arguments->fit, "Fit the elevations by least squares");
   command->add_flag("--open", arguments->open, "Leave the gaps between patches open");
   add_partition_options(*command, arguments->partition);
   command->callback([arguments, &action] { action = [arguments] { return resample(*arguments); }; });
