@@ -13,6 +13,7 @@ namespace emap {
 namespace {
 
 constexpr std::size_t kScrapElements = 48;  // leftovers of so many elements may join a patch whatever their normals
+constexpr double kScrapLeniency = 5;        // times the height tolerance
 constexpr std::uint32_t kBlocked = kNoPatch - 1;
 
 class Finishing {
@@ -95,7 +96,7 @@ class Finishing {
       any = true;
       for (const std::uint32_t element : leftover.elements) fixed[element] = kNoPatch;
     }
-    if (any) flood(graph_, {.aperture_cosine = -1, .fixed = fixed}, sheets_, patch_of_);
+    if (any) flood(graph_, {.aperture_cosine = -1, .fixed = fixed, .leniency = kScrapLeniency}, sheets_, patch_of_);
   }
 
   // Scraps join the patch along which they lie longest, least damage first, until all may add no more.

@@ -26,16 +26,17 @@ std::uint32_t SheetMap::add_patch(const Eigen::Vector3d& normal) {
   return static_cast<std::uint32_t>(axes_.size() - 1);
 }
 
-bool SheetMap::try_add(std::uint32_t element, std::uint32_t patch) {
+bool SheetMap::try_add(std::uint32_t element, std::uint32_t patch, double leniency) {
   cells_.clear();
   places_.clear();
   const std::optional<Slopes> slopes = footprints_.append_cells(element, axes_[patch], cells_);
-  const double tolerance = footprints_.height_tolerance();
+  const double tolerance = leniency * footprints_.height_tolerance();
+  const bool looks_around = leniency <= 1 && std::isfinite(tolerance);
   for (const Cell& cell : cells_) {
     places_.push_back(&place_at(patch, cell.u, cell.v));
     if (std::abs(places_.back()->height - cell.height) > tolerance)
       return false;  // not so where there is no height yet
-    if (slopes && std::isfinite(tolerance) && !leads_to_neighbours(cell, *slopes, patch)) return false;
+    if (slopes && looks_around && !leads_to_neighbours(cell, *slopes, patch)) return false;
   }
   for (std::size_t i = 0; i < cells_.size(); ++i)
     if (std::isnan(places_[i]->height)) *places_[i] = {cells_[i].height, slopes.value_or(Slopes{})};

@@ -25,7 +25,8 @@ class SheetMap {
   // Takes the element into the patch, unless it lies over or under what is there by more than the height tolerance
   // anywhere, or next to something at a height to which neither its slope nor that of the other leads: there another
   // part of the patch passes behind its rim. Returns whether it did.
-  bool try_add(std::uint32_t element, std::uint32_t patch);
+  // leniency: above 1, so many times the height tolerance, and no look at the neighbours.
+  bool try_add(std::uint32_t element, std::uint32_t patch, double leniency = 1);
 
  private:
   static constexpr std::int32_t kTileSize = 16;
