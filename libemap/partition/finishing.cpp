@@ -13,6 +13,7 @@ namespace emap {
 namespace {
 
 constexpr std::size_t kScrapElements = 48;  // leftovers of so many elements may join a patch whatever their normals
+constexpr double kScrapShare = 3e-4;        // and of so much of the area
 constexpr double kScrapLeniency = 5;        // times the height tolerance
 constexpr std::uint32_t kBlocked = kNoPatch - 1;
 
@@ -90,9 +91,10 @@ class Finishing {
 
   void absorb_scraps() {
     std::vector<std::uint32_t> fixed(graph_.size(), kBlocked);
+    const double area = graph_.total_area();
     bool any = false;
     for (const Component& leftover : components_of(graph_, patch_of_, kNoPatch)) {
-      if (leftover.elements.size() > kScrapElements) continue;
+      if (leftover.elements.size() > kScrapElements || leftover.area > kScrapShare * area) continue;
       any = true;
       for (const std::uint32_t element : leftover.elements) fixed[element] = kNoPatch;
     }

@@ -38,6 +38,7 @@ class SheetMap {
 
   // The tile is made where it is missing.
   Place& place_at(std::uint32_t patch, std::int32_t u, std::int32_t v);
+  bool leads_to(std::int32_t du, std::int32_t dv, const Cell& cell, const Slopes& slopes, std::uint32_t patch);
   bool leads_to_neighbours(const Cell& cell, const Slopes& slopes, std::uint32_t patch);
   std::uint32_t tile_at(std::uint32_t patch, std::int32_t tile_u, std::int32_t tile_v);
   void grow_table();
