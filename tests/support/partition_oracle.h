@@ -12,10 +12,10 @@
 
 namespace emap::test {
 
-// The largest difference of height at which one patch of the mesh is met twice by a line along its normal, over all
-// lines through a fine lattice. 0: every patch is a height field.
-inline double worst_fold(const Mesh& mesh, const Partition& partition, double lattice) {
-  double worst = 0;
+// The share of all lines along the patches' normals, through a fine lattice, that meet one patch of the mesh twice at
+// heights that differ by more than the tolerance. 0: every patch is a height field.
+inline double folded_share(const Mesh& mesh, const Partition& partition, double lattice, double tolerance) {
+  std::size_t lines = 0, folded = 0;
   for (const std::vector<std::uint32_t>& elements : partition.elements_of_patches()) {
     const PlaneAxes axes = axes_around(partition.patches[partition.patch_of[elements.front()]].normal);
     std::map<std::pair<int, int>, std::pair<double, double>> heights;
@@ -29,11 +29,12 @@ inline double worst_fold(const Mesh& mesh, const Partition& partition, double la
         auto& [low, high] = heights.try_emplace({u, v}, height, height).first->second;
         low = std::min(low, height);
         high = std::max(high, height);
-        worst = std::max(worst, high - low);
       });
     }
+    lines += heights.size();
+    for (const auto& [place, range] : heights) folded += range.second - range.first > tolerance;
   }
-  return worst;
+  return static_cast<double>(folded) / static_cast<double>(lines);
 }
 
 // Every element in exactly one patch, none empty, counts and areas right, each patch connected.

@@ -60,7 +60,7 @@ TEST(CanonicalMesh, PlacesSamplesAsTheHeaderSays) {
 }
 
 TEST(SamplePoints, HaveTheNormalsOfARamp) {
-  const PointSet points = sample_points(maps_of({"0246", "0246", "0.46"}));
+  const PointSet points = sample_points(maps_of({"0246", "0246", ".246"}));
   for (const Eigen::Vector3d& normal : points.normals)
     EXPECT_NEAR((normal - Eigen::Vector3d(-0.2, 0, 1).normalized()).norm(), 0, 1e-9);
 }

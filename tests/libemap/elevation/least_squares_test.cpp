@@ -40,11 +40,12 @@ double squared_misfit(const ElevationPatch& fine, double fine_spacing, const Ele
       const double height = fine.elevation[row * fine.columns + column];
       for (const auto& [a, b, c] : mesh.triangles) {
         Eigen::Matrix3d corners;
-        corners << mesh.positions[a].head<2>(), 1, mesh.positions[b].head<2>(), 1, mesh.positions[c].head<2>(), 1;
+        const std::array<std::uint32_t, 3> unknowns = {a, b, c};
+        for (int i = 0; i < 3; ++i)
+          corners.col(i) << mesh.positions[unknowns[static_cast<std::size_t>(i)]].head<2>(), 1;
         const Eigen::Vector3d weights =
             corners.fullPivLu().solve(Eigen::Vector3d(column * fine_spacing, row * fine_spacing, 1));
         if (weights.minCoeff() < 0) continue;
-        const std::array<std::uint32_t, 3> unknowns = {a, b, c};
         double interpolated = 0;
         for (int i = 0; i < 3; ++i)
           interpolated += weights[i] * mesh.positions[unknowns[static_cast<std::size_t>(i)]].z();

