@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "libthin/formats/file_bytes.h"
+#include "libthin/foundation/file_bytes.h"
 
 namespace thin {
 namespace {

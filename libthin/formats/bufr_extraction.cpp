@@ -8,7 +8,7 @@
 #include "libthin/formats/bufr_soundings.h"
 #include "libthin/formats/bufr_subsets.h"
 #include "libthin/formats/ecmwf_section2.h"
-#include "libthin/formats/file_bytes.h"
+#include "libthin/foundation/file_bytes.h"
 #include "libthin/formats/gts_bulletin.h"
 
 namespace thin {

@@ -14,7 +14,7 @@
 #include <system_error>
 #include <tuple>
 
-#include "libthin/formats/file_bytes.h"
+#include "libthin/foundation/file_bytes.h"
 
 namespace thin {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "libthin/formats/atomic_file.h"
-#include "libthin/formats/file_bytes.h"
+#include "libthin/foundation/file_bytes.h"
 
 namespace thin {
 namespace {

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "libthin/formats/bufr_file.h"
-#include "libthin/formats/file_bytes.h"
+#include "libthin/foundation/file_bytes.h"
 #include "libthin/formats/file_layout.h"
 #include "libthin/observations/geodesy.h"
 

@@ -11,7 +11,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "libthin/formats/file_bytes.h"
+#include "libthin/foundation/file_bytes.h"
 #include "libthin/formats/netcdf_types.h"
 
 namespace thin {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "libthin/formats/file_bytes.h"
+#include "libthin/foundation/file_bytes.h"
 #include "libthin/formats/netcdf_image.h"
 
 namespace thin {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "libthin/formats/file_bytes.h"
+#include "libthin/foundation/file_bytes.h"
 #include "libthin/formats/shoreline_file.h"
 
 namespace thin {

@@ -12,7 +12,7 @@
 
 #include "libthin/formats/bufr_extraction.h"
 #include "libthin/formats/bufr_file.h"
-#include "libthin/formats/file_bytes.h"
+#include "libthin/foundation/file_bytes.h"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 

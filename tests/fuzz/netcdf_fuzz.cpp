@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "libthin/formats/file_bytes.h"
+#include "libthin/foundation/file_bytes.h"
 #include "libthin/formats/netcdf_layout.h"
 
 namespace {

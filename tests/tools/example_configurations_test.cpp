@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "libthin/formats/file_bytes.h"
+#include "libthin/foundation/file_bytes.h"
 #include "libthin/tools/preparation_data.h"
 #include "libthin/tools/settings.h"
 

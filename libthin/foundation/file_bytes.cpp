@@ -1,4 +1,4 @@
-#include "libthin/formats/file_bytes.h"
+#include "libthin/foundation/file_bytes.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
