@@ -4,6 +4,7 @@
 #include <array>
 
 #include "libemap/coding/baseline_coder.h"
+#include "libemap/coding/contexts_coder.h"
 
 namespace emap {
 namespace {
@@ -18,7 +19,7 @@ const ElevationCoder* find(const Predicate& predicate) {
 }  // namespace
 
 std::span<const ElevationCoder> elevation_coders() {
-  static const std::array coders = {baseline_coder()};
+  static const std::array coders = {contexts_coder(), baseline_coder()};
   return coders;
 }
 

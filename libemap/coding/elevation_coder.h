@@ -28,12 +28,13 @@ struct ElevationCoder {
   std::uint8_t number;
   std::string name;
   std::string summary;
+  bool half_resolution_masks;  // the stream's masks are coarse ones (coding/mask_refinement.h)
 
-  // The maps must outlive the writer.
+  // The maps, which must outlive the writer, have the masks that the reader will have; where such a mask reaches beyond
+  // what is known of the surface, the elevation is not a number.
   std::unique_ptr<ElevationWriter> (*writer)(const ElevationMaps& maps);
 
-  // maps: with planes, sizes and masks as they were written; fills in elevations, and may replace each map by a finer
-  // one of the same plane. step: as written, rounded as the header does.
+  // maps: with planes, sizes and masks; fills in elevations. step: as written, rounded as the header does.
   thin::Result<void> (*read)(RangeDecoder& decoder, double step, ElevationMaps& maps);
 };
 

@@ -60,7 +60,8 @@ class StreamWriter {
   const ElevationCoder& coder_;
   StreamHeader header_;
   std::vector<CodedPlane> planes_;
-  const ElevationMaps& maps_;
+  ElevationMaps maps_;                           // with the masks that the reader will have
+  std::vector<std::vector<std::uint8_t>> masks_;  // as they are written
   std::unique_ptr<ElevationWriter> elevations_;
 };
 
