@@ -14,7 +14,8 @@ namespace emap {
 BasePlane plane_with_normal(const Eigen::Vector3d& normal);
 
 // One plane for each patch. The normal is the patch's; axis_u and axis_v are turned so that the patch's bounding
-// rectangle is as small as it gets within the plane; the origin is the corner at which u, v and the elevation are least.
+// rectangle is as small as it gets within the plane; the origin is the corner at which u, v and the elevation are
+// least.
 std::vector<BasePlane> base_planes(const Mesh& mesh, const Partition& partition);
 std::vector<BasePlane> base_planes(const PointSet& points, const Partition& partition);
 

@@ -8,9 +8,15 @@
 
 namespace emap {
 
-// Every square of four supported samples becomes two triangles along its shorter diagonal, every three supported samples
-// of a square one triangle. Patches are not connected.
-Mesh canonical_mesh(const ElevationMaps& maps);
+struct CanonicalOptions {
+  // Triangles whose angle to their base plane is wider are left out: where the surface turns away from the plane and
+  // another part of the patch lies beside it in the map, they would be walls that the surface does not have.
+  double steepest_degrees = 85;
+};
+
+// Every square of four supported samples becomes two triangles along its shorter diagonal, every three supported
+// samples of a square one triangle. Patches are not connected.
+Mesh canonical_mesh(const ElevationMaps& maps, const CanonicalOptions& options = {});
 
 // All samples with normals from the elevations' differences.
 PointSet sample_points(const ElevationMaps& maps);

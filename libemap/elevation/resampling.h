@@ -2,8 +2,8 @@
 
 // Sampling of a partitioned surface on regular grids, one over each patch's base plane (thesis, 3.3.3).
 //
-// A sample belongs to a patch's map where the line through it along the plane's normal meets the patch; its elevation is
-// where they meet (where they meet more than once, within the partition's fold tolerance: the highest). What lies at
+// A sample belongs to a patch's map where the line through it along the plane's normal meets the patch; its elevation
+// is where they meet (where they meet more than once, within the partition's fold tolerance: the highest). What lies at
 // negative u or v of its plane's origin is not sampled: who quantises origins rounds them down.
 
 #include <span>

@@ -3,7 +3,7 @@
 // The two kinds of surface that libemap takes: a triangle mesh, and a set of points whose surface is implied by them
 // (surface/mls_surface.h).
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <vector>

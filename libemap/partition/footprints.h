@@ -1,0 +1,70 @@
+#pragma once
+
+// Where an element lies over a plane: the cells of a square raster whose centre lines it meets, and at which height.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "libemap/partition/element_graph.h"
+#include "libemap/surface/surface.h"
+
+namespace emap {
+
+struct PlaneAxes {
+  Eigen::Vector3d u, v, normal;  // orthonormal, right-handed
+};
+
+// The same axes for the same normal. REQUIRES: unit length
+PlaneAxes axes_around(const Eigen::Vector3d& normal);
+
+struct Cell {
+  std::int32_t u, v;
+  float height;
+};
+
+class Footprints {
+ public:
+  virtual ~Footprints() = default;
+
+  // Appends the element's cells; cell (i, j) is centred at ((i + 0.5) * cell_size, (j + 0.5) * cell_size) in the axes'
+  // coordinates, relative to the origin of the footprints (somewhere at the model).
+  virtual void append_cells(std::uint32_t element, const PlaneAxes& axes, std::vector<Cell>& cells) const = 0;
+
+  double cell_size() const { return cell_size_; }
+  // Heights of one sheet may differ by this within a cell.
+  double height_tolerance() const { return height_tolerance_; }
+
+ protected:
+  Footprints(double cell_size, double height_tolerance) : cell_size_(cell_size), height_tolerance_(height_tolerance) {}
+
+  double cell_size_, height_tolerance_;
+};
+
+// Triangles, exactly.
+class TriangleFootprints : public Footprints {
+ public:
+  // The mesh must outlive the footprints.
+  TriangleFootprints(const Mesh& mesh, const Eigen::Vector3d& origin, double cell_size, double height_tolerance)
+      : Footprints(cell_size, height_tolerance), mesh_(mesh), origin_(origin) {}
+  void append_cells(std::uint32_t element, const PlaneAxes& axes, std::vector<Cell>& cells) const override;
+
+ private:
+  const Mesh& mesh_;
+  Eigen::Vector3d origin_;
+};
+
+// Discs of the elements' areas around their centres: for points, and for groups of triangles.
+class DiscFootprints : public Footprints {
+ public:
+  // The graph must outlive the footprints.
+  DiscFootprints(const ElementGraph& graph, const Eigen::Vector3d& origin, double cell_size, double height_tolerance)
+      : Footprints(cell_size, height_tolerance), graph_(graph), origin_(origin) {}
+  void append_cells(std::uint32_t element, const PlaneAxes& axes, std::vector<Cell>& cells) const override;
+
+ private:
+  const ElementGraph& graph_;
+  Eigen::Vector3d origin_;
+};
+
+}  // namespace emap

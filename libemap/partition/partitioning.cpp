@@ -1,0 +1,84 @@
+#include "libemap/partition/partitioning.h"
+
+#include <cmath>
+#include <limits>
+
+#include "libemap/partition/coarsening.h"
+#include "libemap/partition/finishing.h"
+#include "libemap/partition/lloyd_partition.h"
+#include "libemap/surface/bounding_box.h"
+
+namespace emap {
+namespace {
+
+using thin::Error;
+using thin::ErrorKind;
+using thin::Result;
+
+constexpr std::size_t kGroupSize = 20;      // elements a group
+constexpr double kGroupSpreadDegrees = 25;  // of normals within a group
+constexpr double kFineCells = 0.6;          // cell sizes, in square roots of the mean area of an element
+constexpr double kCoarseCells = 0.6;
+constexpr double kCoarseTolerance = 1.5;  // height tolerance among groups, in the same unit
+
+double mean_element_size(const ElementGraph& graph) {
+  return std::sqrt(graph.total_area() / static_cast<double>(graph.size()));
+}
+
+Partition partition_elements(const ElementGraph& graph, const Footprints& footprints, const Eigen::Vector3d& origin,
+                             const PartitionOptions& options) {
+  const Coarsening coarsening = coarsen(graph, kGroupSize, kGroupSpreadDegrees);
+  const double group_size = mean_element_size(coarsening.graph);
+  const DiscFootprints discs(coarsening.graph, origin, kCoarseCells * group_size,
+                             options.strict ? kCoarseTolerance * group_size : std::numeric_limits<double>::infinity());
+  const RoughPartition rough = lloyd_partition(
+      coarsening.graph, discs, {.aperture_degrees = options.aperture_degrees, .least_patches = options.least_patches});
+  return finish_partition(
+      graph, footprints, coarsening, rough,
+      {.aperture_degrees = options.aperture_degrees, .optimise_boundaries = options.optimise_boundaries});
+}
+
+double fold_tolerance(const PartitionOptions& options, double diagonal) {
+  return options.strict ? options.fold_tolerance * diagonal : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+void PartitionOptions::declare(thin::OptionTable& table) {
+  table.add_choice("partition", method, {{"gla", PartitionMethod::gla}, {"split-merge", PartitionMethod::split_merge}},
+                   {.explanation = "how the surface is cut into patches: generalised Lloyd, or split and merge"});
+  table.add("aperture", aperture_degrees,
+            {.unit = "degrees",
+             .maximum = 89,
+             .above = 0,
+             .explanation = "widest angle between a patch's normals and its plane's"});
+  table.add("split", split_degrees,
+            {.unit = "degrees",
+             .maximum = 89,
+             .above = 0,
+             .explanation = "split-merge: aperture of the clusters before merging"});
+  table.add("patches", least_patches, {.minimum = 1, .explanation = "gla: at least so many patches"});
+  table.add("strict", strict, {.explanation = "let no patch have two sheets over one place"});
+  table.add("fold_tolerance", fold_tolerance,
+            {.unit = "diagonals", .minimum = 0, .maximum = 1, .explanation = "sheets nearer than this count as one"});
+  table.add("optimise_boundaries", optimise_boundaries, {.explanation = "shorten the boundaries between patches"});
+  table.add("smoothing_rounds", smoothing_rounds,
+            {.minimum = 0, .maximum = 100, .explanation = "of the normals that the methods see"});
+  table.add("neighbours", neighbour_count,
+            {.minimum = 1, .maximum = 64, .explanation = "points: k of the neighbour graph"});
+}
+
+Result<Partition> partition_mesh(const Mesh& mesh, const PartitionOptions& options) {
+  if (mesh.triangles.empty())
+    return Error{ErrorKind::input, "the mesh has no triangles to make patches of; read it as points"};
+  const ElementGraph graph = mesh_graph(mesh, options.smoothing_rounds);
+  if (!(graph.total_area() > 0))
+    return Error{ErrorKind::input, "no triangle of the mesh has an area; there is no surface to make patches of"};
+  const BoundingBox box = bounding_box(mesh.positions);
+  const Eigen::Vector3d origin = (box.minimum + box.maximum) / 2;
+  const TriangleFootprints footprints(mesh, origin, kFineCells * mean_element_size(graph),
+                                      fold_tolerance(options, box.diagonal()));
+  return partition_elements(graph, footprints, origin, options);
+}
+
+}  // namespace emap

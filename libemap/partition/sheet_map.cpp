@@ -1,0 +1,77 @@
+#include "libemap/partition/sheet_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace emap {
+namespace {
+
+constexpr std::uint32_t kNoTile = std::numeric_limits<std::uint32_t>::max();
+
+std::uint64_t mixed(std::uint64_t value) {
+  value = (value ^ (value >> 31)) * 0x9E3779B97F4A7C15ULL;
+  return value ^ (value >> 29);
+}
+
+}  // namespace
+
+SheetMap::SheetMap(const Footprints& footprints) : footprints_(footprints), table_(1024, {0, 0, 0, kNoTile}) {}
+
+std::uint32_t SheetMap::add_patch(const Eigen::Vector3d& normal) {
+  axes_.push_back(axes_around(normal));
+  return static_cast<std::uint32_t>(axes_.size() - 1);
+}
+
+bool SheetMap::try_add(std::uint32_t element, std::uint32_t patch) {
+  cells_.clear();
+  places_.clear();
+  footprints_.append_cells(element, axes_[patch], cells_);
+  const double tolerance = footprints_.height_tolerance();
+  for (const Cell& cell : cells_) {
+    places_.push_back(&height_at(patch, cell));
+    if (std::abs(*places_.back() - cell.height) > tolerance) return false;  // not so where there is no height yet
+  }
+  for (std::size_t i = 0; i < cells_.size(); ++i)
+    if (std::isnan(*places_[i])) *places_[i] = cells_[i].height;
+  return true;
+}
+
+float& SheetMap::height_at(std::uint32_t patch, const Cell& cell) {
+  const std::int32_t tile_u = cell.u >> 4, tile_v = cell.v >> 4;
+  static_assert(kTileSize == 1 << 4);
+  Tile& tile = tiles_[tile_at(patch, tile_u, tile_v)];
+  return tile[static_cast<std::size_t>((cell.v & (kTileSize - 1)) * kTileSize + (cell.u & (kTileSize - 1)))];
+}
+
+std::size_t SheetMap::slot_of(std::uint32_t patch, std::int32_t tile_u, std::int32_t tile_v) const {
+  const std::uint64_t key = mixed(mixed((std::uint64_t{patch} << 32) ^ static_cast<std::uint32_t>(tile_u)) ^
+                                  static_cast<std::uint32_t>(tile_v));
+  std::size_t slot = key & (table_.size() - 1);
+  for (;; slot = (slot + 1) & (table_.size() - 1)) {
+    const TableEntry& entry = table_[slot];
+    if (entry.tile == kNoTile || (entry.patch == patch && entry.tile_u == tile_u && entry.tile_v == tile_v))
+      return slot;
+  }
+}
+
+std::uint32_t SheetMap::tile_at(std::uint32_t patch, std::int32_t tile_u, std::int32_t tile_v) {
+  std::size_t slot = slot_of(patch, tile_u, tile_v);
+  if (table_[slot].tile != kNoTile) return table_[slot].tile;
+  if (2 * (tiles_.size() + 1) > table_.size()) {
+    grow_table();
+    slot = slot_of(patch, tile_u, tile_v);
+  }
+  table_[slot] = {patch, tile_u, tile_v, static_cast<std::uint32_t>(tiles_.size())};
+  tiles_.emplace_back().fill(std::numeric_limits<float>::quiet_NaN());
+  return table_[slot].tile;
+}
+
+void SheetMap::grow_table() {
+  const std::vector<TableEntry> entries = std::move(table_);
+  table_.assign(2 * entries.size(), {0, 0, 0, kNoTile});
+  for (const TableEntry& entry : entries)
+    if (entry.tile != kNoTile) table_[slot_of(entry.patch, entry.tile_u, entry.tile_v)] = entry;
+}
+
+}  // namespace emap
