@@ -49,10 +49,11 @@ struct DecodedStream {
 // One surface, ready to be written at any step.
 class StreamWriter {
  public:
-  // planes: those over which `maps` were sampled; their columns and rows are set here from the maps. `maps` must
-  // outlive the writer. REQUIRES: one plane for each map
+  // planes: those over which `maps` were sampled; their columns and rows are set here from the maps.
+  // REQUIRES: one plane for each map, the frame's spacing for all maps
   StreamWriter(const ElevationCoder& coder, const StreamFrame& frame, std::vector<CodedPlane> planes,
-               const ElevationMaps& maps, bool from_points);
+               ElevationMaps maps, bool from_points);
+  StreamWriter(const StreamWriter&) = delete;
 
   std::vector<std::uint8_t> write(double step);
 
