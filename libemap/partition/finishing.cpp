@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "libemap/partition/boundary_optimisation.h"
@@ -31,6 +32,7 @@ class Finishing {
     flood(graph_, {.aperture_cosine = aperture_cosine_, .fixed = interiors}, sheets_, patch_of_);
     flood(graph_, {.aperture_cosine = aperture_cosine_}, sheets_, patch_of_);
     absorb_scraps();
+    join_least_scraps();
     while (add_patches_for_leftovers()) {
       flood(graph_, {.aperture_cosine = aperture_cosine_}, sheets_, patch_of_);
       absorb_scraps();
@@ -94,6 +96,49 @@ class Finishing {
       for (const std::uint32_t element : leftover.elements) fixed[element] = kNoPatch;
     }
     if (any) flood(graph_, {.aperture_cosine = -1, .fixed = fixed}, sheets_, patch_of_);
+  }
+
+  // Scraps join the patch along which they lie longest, least damage first, until all may add no more.
+  void join_least_scraps() {
+    struct Scrap {
+      Component part;
+      double damage;  // squared distance to the patch integrated over the scrap, rising from 0 at one of its ends
+    };
+    std::vector<Scrap> scraps;
+    for (Component& leftover : components_of(graph_, patch_of_, kNoPatch)) {
+      const double extent = extent_of(leftover.elements);
+      scraps.push_back({std::move(leftover), leftover.area * extent * extent / 3});
+    }
+    std::stable_sort(scraps.begin(), scraps.end(), [](const Scrap& a, const Scrap& b) { return a.damage < b.damage; });
+    double allowance = options_.scrap_error * options_.scrap_error * graph_.total_area();
+    for (const Scrap& scrap : scraps) {
+      allowance -= scrap.damage;
+      if (allowance < 0) break;
+      const std::uint32_t patch = longest_neighbour(scrap.part.elements);
+      for (const std::uint32_t element : scrap.part.elements) patch_of_[element] = patch;
+    }
+  }
+
+  // About as far as a point of the elements can be from what lies around them.
+  double extent_of(const std::vector<std::uint32_t>& elements) const {
+    Eigen::Vector3d low = graph_.centres[elements.front()], high = low;
+    double largest_area = 0;
+    for (const std::uint32_t element : elements) {
+      largest_area = std::max(largest_area, graph_.areas[element]);
+      low = low.cwiseMin(graph_.centres[element]);
+      high = high.cwiseMax(graph_.centres[element]);
+    }
+    return (high - low).norm() + 1.5 * std::sqrt(largest_area);
+  }
+
+  std::uint32_t longest_neighbour(const std::vector<std::uint32_t>& elements) const {
+    std::map<std::uint32_t, double> lengths;
+    for (const std::uint32_t element : elements)
+      for (const Adjacency& side : graph_.neighbours(element))
+        if (patch_of_[side.element] != kNoPatch) lengths[patch_of_[side.element]] += side.boundary_length;
+    const auto longest = std::max_element(lengths.begin(), lengths.end(),
+                                          [](const auto& a, const auto& b) { return a.second < b.second; });
+    return longest == lengths.end() ? kNoPatch : longest->first;
   }
 
   // A seed in each connected leftover, with the plane that suits what can be reached from it. False where nothing is

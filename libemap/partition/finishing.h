@@ -11,6 +11,7 @@ namespace emap {
 
 struct FinishingOptions {
   double aperture_degrees = 80;
+  double scrap_error = 0;  // model units: root mean square error over the whole surface that scraps may add
   bool optimise_boundaries = true;
 };
 

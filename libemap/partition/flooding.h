@@ -4,16 +4,14 @@
 // whose normal is nearest to that of the plane of a patch beside it. O(n log n).
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "libemap/partition/element_graph.h"
+#include "libemap/partition/rough_partition.h"
 #include "libemap/partition/sheet_map.h"
 
 namespace emap {
-
-constexpr std::uint32_t kNoPatch = std::numeric_limits<std::uint32_t>::max();
 
 struct FloodingRules {
   double aperture_cosine = 0;  // no element whose normal is farther from the plane's than this

@@ -5,7 +5,9 @@
 
 #include "libemap/partition/coarsening.h"
 #include "libemap/partition/finishing.h"
+#include "libemap/partition/islands.h"
 #include "libemap/partition/lloyd_partition.h"
+#include "libemap/partition/patch_merging.h"
 #include "libemap/surface/bounding_box.h"
 
 namespace emap {
@@ -25,17 +27,27 @@ double mean_element_size(const ElementGraph& graph) {
   return std::sqrt(graph.total_area() / static_cast<double>(graph.size()));
 }
 
-Partition partition_elements(const ElementGraph& graph, const Footprints& footprints, const Eigen::Vector3d& origin,
+constexpr std::size_t kIslandElements = 64;  // unconnected parts of at most so many elements are linked
+constexpr double kIslandReach = 8;           // to what lies within so many element sizes
+
+Partition partition_elements(const ElementGraph& graph, const Footprints& footprints, const BoundingBox& box,
                              const PartitionOptions& options) {
+  const Eigen::Vector3d origin = (box.minimum + box.maximum) / 2;
   const Coarsening coarsening = coarsen(graph, kGroupSize, kGroupSpreadDegrees);
   const double group_size = mean_element_size(coarsening.graph);
   const DiscFootprints discs(coarsening.graph, origin, kCoarseCells * group_size,
                              options.strict ? kCoarseTolerance * group_size : std::numeric_limits<double>::infinity());
-  const RoughPartition rough = lloyd_partition(
+  const RoughPartition seeded = lloyd_partition(
       coarsening.graph, discs, {.aperture_degrees = options.aperture_degrees, .least_patches = options.least_patches});
-  return finish_partition(
-      graph, footprints, coarsening, rough,
-      {.aperture_degrees = options.aperture_degrees, .optimise_boundaries = options.optimise_boundaries});
+  const RoughPartition rough = merge_patches(coarsening.graph, discs, seeded,
+                                             {.aperture_degrees = options.aperture_degrees,
+                                              .least_patches = static_cast<std::size_t>(options.least_patches),
+                                              .strict = options.strict});
+  const double scrap_error = options.strict ? options.scrap_error * box.diagonal() : 0;
+  return finish_partition(graph, footprints, coarsening, rough,
+                          {.aperture_degrees = options.aperture_degrees,
+                           .scrap_error = scrap_error,
+                           .optimise_boundaries = options.optimise_boundaries});
 }
 
 double fold_tolerance(const PartitionOptions& options, double diagonal) {
@@ -61,6 +73,11 @@ void PartitionOptions::declare(thin::OptionTable& table) {
   table.add("strict", strict, {.explanation = "let no patch have two sheets over one place"});
   table.add("fold_tolerance", fold_tolerance,
             {.unit = "diagonals", .minimum = 0, .maximum = 1, .explanation = "sheets nearer than this count as one"});
+  table.add("scrap_error", scrap_error,
+            {.unit = "diagonals",
+             .minimum = 0,
+             .maximum = 1,
+             .explanation = "root mean square error that folds too small for patches of their own may add"});
   table.add("optimise_boundaries", optimise_boundaries, {.explanation = "shorten the boundaries between patches"});
   table.add("smoothing_rounds", smoothing_rounds,
             {.minimum = 0, .maximum = 100, .explanation = "of the normals that the methods see"});
@@ -71,14 +88,16 @@ void PartitionOptions::declare(thin::OptionTable& table) {
 Result<Partition> partition_mesh(const Mesh& mesh, const PartitionOptions& options) {
   if (mesh.triangles.empty())
     return Error{ErrorKind::input, "the mesh has no triangles to make patches of; read it as points"};
-  const ElementGraph graph = mesh_graph(mesh, options.smoothing_rounds);
+  ElementGraph graph = mesh_graph(mesh, options.smoothing_rounds);
   if (!(graph.total_area() > 0))
     return Error{ErrorKind::input, "no triangle of the mesh has an area; there is no surface to make patches of"};
+  if (const std::vector<AdjacentPair> links = island_links(graph, kIslandElements, kIslandReach); !links.empty())
+    add_links(links, graph);
   const BoundingBox box = bounding_box(mesh.positions);
   const Eigen::Vector3d origin = (box.minimum + box.maximum) / 2;
   const TriangleFootprints footprints(mesh, origin, kFineCells * mean_element_size(graph),
                                       fold_tolerance(options, box.diagonal()));
-  return partition_elements(graph, footprints, origin, options);
+  return partition_elements(graph, footprints, box, options);
 }
 
 }  // namespace emap

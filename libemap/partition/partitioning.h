@@ -21,6 +21,7 @@ struct PartitionOptions {
   int least_patches = 1;         // gla: at least so many
   bool strict = true;            // refuse second sheets
   double fold_tolerance = 1e-4;  // of the diagonal: sheets nearer to each other than this count as one
+  double scrap_error = 8e-6;     // of the diagonal: RMS error that folds too small for patches of their own may add
   bool optimise_boundaries = true;
   int smoothing_rounds = 2;  // of the normals that the methods see
   int neighbour_count = 5;   // points: k of the neighbour graph
