@@ -26,9 +26,12 @@ class CoefficientCoding {
  public:
   CoefficientCoding();
 
-  // Writes map.values, or reads them into it (all 0 before). Deterministic; a reader whose stream is exhausted stops.
+  // Writes map.values, or reads them into it (all 0 before). A reader whose stream is exhausted stops.
+  //
+  // wanted: for a writer that leaves the choice of values to the coding, in quantiser steps, for each place. A value
+  // becomes a smaller one or 0 where the squared error that this adds is less than the bits that it saves are worth.
   template <class Coder>
-  void code(Coder& coder, QuantisedMap& map);
+  void code(Coder& coder, QuantisedMap& map, const std::vector<double>* wanted = nullptr);
 
  private:
   template <class Coder>

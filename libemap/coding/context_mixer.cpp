@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::int32_t kLargestLogit = 2559;
 constexpr std::uint32_t kLeastProbability = 24;  // of 65536
-constexpr std::uint32_t kMemoryLimit = 250;
+constexpr std::uint32_t kMemoryLimit = 500;
 constexpr std::int32_t kConstantInput = 256;
 
 // 65536 / (1 + exp(-x)) at x = -10, -9.5, ... 10.
@@ -42,7 +42,7 @@ const std::array<std::uint32_t, 1024>& reciprocals() {
 
 // Large steps while a set has seen little, small ones later. In 1/4096.
 std::int64_t learning_rate(std::uint32_t count) {
-  return 6 + 1536 / (count + 24);
+  return 16 + 3000 / (count + 40);
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ void AdaptiveBit::update(bool bit, std::uint32_t limit) {
 ContextMixer::ContextMixer(std::span<const std::uint32_t> context_counts, std::uint32_t weight_sets) {
   assert(context_counts.size() < kMaximumInputs);
   for (const std::uint32_t count : context_counts) tables_.emplace_back(count);
-  const auto first_weight = static_cast<std::int32_t>(80000 / std::max<std::size_t>(context_counts.size(), 1));
+  const auto first_weight = static_cast<std::int32_t>(70000 / std::max<std::size_t>(context_counts.size(), 1));
   for (std::uint32_t set = 0; set < weight_sets; ++set) {
     weights_.insert(weights_.end(), context_counts.size(), first_weight);
     weights_.push_back(0);

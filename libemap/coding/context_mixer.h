@@ -64,8 +64,10 @@ class ContextMixer {
     return bit;
   }
 
- private:
+  // Of a one in these contexts, in 1/65536, without learning.
   std::uint32_t predict(std::span<const std::uint32_t> contexts, std::uint32_t weight_set);
+
+ private:
   void learn(bool bit, std::uint32_t probability);
 
   std::vector<std::vector<AdaptiveBit>> tables_;

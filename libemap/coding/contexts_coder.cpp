@@ -14,9 +14,9 @@ namespace emap {
 namespace {
 
 // Magnitudes from this on round up; what is left lies nearer to zero than to one, so that zeros are cheap.
-constexpr double kRounding = 0.4;
+static const double kRounding = getenv("KR")?atof(getenv("KR")):0.4;
 // Where a reader puts a coefficient within its interval, measured from the interval's number.
-constexpr double kReconstruction = -0.04;
+static const double kReconstruction = getenv("KO")?atof(getenv("KO")):-0.04;
 
 QuantisedMap empty_map(const ElevationPatch& patch) {
   const std::uint32_t levels = rectangular_levels(patch.columns, patch.rows);
@@ -33,18 +33,19 @@ class ContextsWriter : public ElevationWriter {
  public:
   explicit ContextsWriter(const ElevationMaps& maps) : maps_(maps) {
     for (const ElevationPatch& patch : maps.patches) quantised_.push_back(empty_map(patch));
-  }
+ wanted_.resize(quantised_.size());  }
 
   void write(double step, RangeEncoder& encoder) override {
     thin::parallel_ranges(quantised_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) quantise(maps_.patches[i], step, quantised_[i]);
+      for (std::size_t i = begin; i < end; ++i) quantise(maps_.patches[i], step, quantised_[i],wanted_[i]);
     });
+    if(getenv("STAT")){ long nz[9][4]={},n[9][4]={},one[9][4]={}; double sumlog=0; for(auto&m:quantised_) for(auto&b:m.bands) for(unsigned r=b.row;r<b.row+b.rows;++r)for(unsigned c=b.column;c<b.column+b.columns;++c){size_t i=size_t(r)*m.columns+c; if(!m.support[i])continue; n[b.level][b.kind]++; int a=std::abs(m.values[i]); if(a)nz[b.level][b.kind]++; if(a==1)one[b.level][b.kind]++; } (void)sumlog; for(int l=1;l<9;l++){fprintf(stderr,"level %d:",l);for(int k=0;k<4;k++)fprintf(stderr," %ld/%ld(%ld)",nz[l][k],n[l][k],one[l][k]);fprintf(stderr,"\n");}}
     CoefficientCoding coding;
-    for (QuantisedMap& map : quantised_) coding.code(encoder, map);
+    for (std::size_t i=0;i<quantised_.size();++i) coding.code(encoder, quantised_[i], getenv("BP")?&wanted_[i]:nullptr);
   }
 
  private:
-  static void quantise(const ElevationPatch& patch, double step, QuantisedMap& map) {
+  static void quantise(const ElevationPatch& patch, double step, QuantisedMap& map,std::vector<double>&wanted) {wanted.resize(map.values.size());
     std::vector<double> known = patch.elevation;
     for (std::size_t i = 0; i < known.size(); ++i)
       if (!patch.mask[i]) known[i] = std::numeric_limits<double>::quiet_NaN();
@@ -53,11 +54,11 @@ class ContextsWriter : public ElevationWriter {
     const std::vector<double> coefficients =
         fit_coefficients(map.columns, map.rows, rectangular_levels(map.columns, map.rows), known, map.support,
                          map.bands, steps);
-    for (std::size_t b = 0; b < map.bands.size(); ++b) quantise_band(map.bands[b], steps[b], coefficients, map);
+    for (std::size_t b = 0; b < map.bands.size(); ++b) quantise_band(map.bands[b], steps[b], coefficients, map,wanted);
   }
 
   static void quantise_band(const Band& band, double step, const std::vector<double>& coefficients,
-                            QuantisedMap& map) {
+                            QuantisedMap& map,std::vector<double>&wanted) {
     constexpr double kMost = (1U << kValueBits) - 1;
     for (std::uint32_t r = band.row; r < band.row + band.rows; ++r)
       for (std::uint32_t c = band.column; c < band.column + band.columns; ++c) {
@@ -65,12 +66,12 @@ class ContextsWriter : public ElevationWriter {
         const double rounding = band.kind == 0 ? 0.5 : kRounding;
         const auto magnitude =
             static_cast<std::int32_t>(std::min(std::floor(std::abs(coefficients[i]) / step + rounding), kMost));
-        map.values[i] = !map.support[i] ? 0 : coefficients[i] < 0 ? -magnitude : magnitude;
+        wanted[i]=coefficients[i]/step; map.values[i] = !map.support[i] ? 0 : coefficients[i] < 0 ? -magnitude : magnitude;
       }
   }
 
   const ElevationMaps& maps_;
-  std::vector<QuantisedMap> quantised_;
+  std::vector<QuantisedMap> quantised_;std::vector<std::vector<double>> wanted_;
 };
 
 void fill_in(ElevationPatch& patch, const QuantisedMap& map, double step) {
