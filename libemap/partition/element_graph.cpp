@@ -1,8 +1,8 @@
 #include "libemap/partition/element_graph.h"
 
-#include <algorithm>
 #include <numeric>
 
+#include "libemap/surface/boundary_edges.h"
 #include "libemap/surface/mesh_normals.h"
 #include "libthin/foundation/parallel.h"
 
@@ -11,55 +11,11 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
-// A triangle's side, seen from the smaller of its two vertices.
-struct Side {
-  std::uint32_t larger_vertex, triangle;
-};
-
-// All sides by their smaller vertex: first[v] .. first[v + 1] in `sides`.
-struct SidesByVertex {
-  std::vector<std::uint32_t> first;
-  std::vector<Side> sides;
-};
-
-template <class Visitor>
-void visit_sides(const Mesh& mesh, const Visitor& visit) {
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& triangle = mesh.triangles[t];
-    for (std::size_t corner = 0; corner < 3; ++corner) {
-      const std::uint32_t a = triangle[corner], b = triangle[(corner + 1) % 3];
-      if (a != b) visit(std::min(a, b), std::max(a, b), t);
-    }
-  }
-}
-
-SidesByVertex sides_by_vertex(const Mesh& mesh) {
-  SidesByVertex result;
-  result.first.assign(mesh.positions.size() + 1, 0);
-  visit_sides(mesh, [&](std::uint32_t a, std::uint32_t, std::uint32_t) { ++result.first[a + 1]; });
-  std::partial_sum(result.first.begin(), result.first.end(), result.first.begin());
-  result.sides.resize(result.first.back());
-  std::vector<std::uint32_t> next(result.first.begin(), result.first.end() - 1);
-  visit_sides(mesh, [&](std::uint32_t a, std::uint32_t b, std::uint32_t t) { result.sides[next[a]++] = {b, t}; });
-  return result;
-}
-
 std::vector<AdjacentPair> edge_sharing_pairs(const Mesh& mesh) {
-  SidesByVertex by_vertex = sides_by_vertex(mesh);
   std::vector<AdjacentPair> pairs;
-  pairs.reserve(by_vertex.sides.size() / 2);
-  for (std::uint32_t vertex = 0; vertex + 1 < by_vertex.first.size(); ++vertex) {
-    const auto begin = by_vertex.sides.begin() + by_vertex.first[vertex];
-    const auto end = by_vertex.sides.begin() + by_vertex.first[vertex + 1];
-    std::sort(begin, end, [](const Side& a, const Side& b) {
-      return a.larger_vertex != b.larger_vertex ? a.larger_vertex < b.larger_vertex : a.triangle < b.triangle;
-    });
-    // Triangles at one edge are chained: each is the neighbour of the next.
-    for (auto side = begin; side != end && side + 1 != end; ++side)
-      if (side->larger_vertex == (side + 1)->larger_vertex && side->triangle != (side + 1)->triangle)
-        pairs.push_back({side->triangle, (side + 1)->triangle,
-                         static_cast<float>((mesh.positions[vertex] - mesh.positions[side->larger_vertex]).norm())});
-  }
+  for (const EdgePair& pair : edge_pairs(mesh))
+    pairs.push_back({pair.first_triangle, pair.second_triangle,
+                     static_cast<float>((mesh.positions[pair.vertex] - mesh.positions[pair.other_vertex]).norm())});
   return pairs;
 }
 

@@ -10,6 +10,7 @@
 
 #include "libemap/elevation/base_plane.h"
 #include "libemap/elevation/canonical_mesh.h"
+#include "libemap/elevation/gap_filling.h"
 #include "libemap/elevation/resampling.h"
 #include "libemap/partition/partitioning.h"
 #include "libemap/surface/model_file.h"
@@ -24,6 +25,7 @@ struct ResampleArguments {
   std::string input, output;
   PartitionArguments partition;
   double mu = 1;
+  bool open = false;
 };
 
 class Stopwatch {
@@ -51,13 +53,19 @@ int resample(const ResampleArguments& arguments) {
   const double spacing = spacing_for_resolution(*mesh, *partition, planes, arguments.mu);
   const ElevationMaps maps = resample_mesh(*mesh, *partition, planes, spacing);
   watch.say("resample");
-  const Mesh resampled = canonical_mesh(maps);
+  const ClosedMesh closed = arguments.open ? ClosedMesh{canonical_mesh(maps), {}} : closed_mesh(maps);
+  const Mesh& resampled = closed.mesh;
   watch.say("mesh");
   if (const thin::Result<void> written = write_ply(arguments.output, resampled); !written) return fail(written.error());
   std::fputs(fmt::format("{} patches, spacing {:.6g}, {} samples, {} triangles\n", maps.patches.size(), spacing,
                          resampled.positions.size(), resampled.triangles.size())
                  .c_str(),
              stdout);
+  if (!arguments.open)
+    std::fputs(fmt::format("{} triangles inserted; boundary edges {} before, {} left\n", closed.filling.inserted,
+                           closed.filling.edges_before, closed.filling.edges_left)
+                   .c_str(),
+               stdout);
   return 0;
 }
 
@@ -70,6 +78,7 @@ void add_resample_command(CLI::App& program, Action& action) {
   command->add_option("output", arguments->output, "Mesh of the samples")->required()->type_name("OUT.ply");
   command->add_option("--mu", arguments->mu, "Sampling interval; 1: as many samples as there are vertices [1]")
       ->check(CLI::PositiveNumber);
+  command->add_flag("--open", arguments->open, "Leave the gaps between patches open");
   add_partition_options(*command, arguments->partition);
   command->callback([arguments, &action] { action = [arguments] { return resample(*arguments); }; });
 }
