@@ -190,7 +190,9 @@ thin::Result<void> read(RangeDecoder& decoder, double, ElevationMaps& maps) {
 }  // namespace
 
 ElevationCoder baseline_coder() {
-  return {1, "baseline", "shape-adaptive 9/7 wavelet, embedded bit planes by set splitting, truncation of each map",
+  return {1,
+          "baseline",
+          "shape-adaptive 9/7 wavelet, embedded bit planes by set splitting, truncation of each map",
           false,
           [](const ElevationMaps& maps) -> std::unique_ptr<ElevationWriter> {
             return std::make_unique<BaselineWriter>(maps);

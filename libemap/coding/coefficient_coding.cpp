@@ -11,16 +11,18 @@ namespace {
 
 constexpr std::uint32_t kLevels = 8;
 constexpr std::int32_t kLargestValue = 1 << (kValueBits + 2);  // beyond what any writer writes
-static const double kBitPrice = getenv("BP")?atof(getenv("BP")):0.1;   // squared steps
-constexpr double kSignBits = 1.5;  // of the sign, and of saying that a magnitude is one
+constexpr double kBitPrice = 0.06;                             // squared steps
+constexpr double kSignBits = 1.5;                              // of the sign, and of saying that a magnitude is one
 constexpr std::uint32_t kUnary = 14;  // magnitudes up to this one are counted out, larger ones escape
-constexpr std::array<std::uint32_t, 7> kZeroContexts = {12 * 4 * kLevels, 6 * 8 * 4, 6 * 8 * 4,  144 * 4,
+constexpr std::array<std::uint32_t, 7> kZeroContexts = {12 * 4 * kLevels, 6 * 8 * 4,    6 * 8 * 4,          144 * 4,
                                                         6 * 6 * 4 * 4,    16 * kLevels, 4 * 3 * 4 * kLevels};
 constexpr std::array<std::uint32_t, 4> kLargerContexts = {kUnary * 12, kUnary * 6 * 6, kUnary * 4 * kLevels,
                                                           kUnary * 36};
 constexpr std::array<std::uint32_t, 3> kSignContexts = {9 * 4, 27 * 4, 81};
 
-bool cut_short(const RangeDecoder& coder) { return coder.exhausted(); }
+bool cut_short(const RangeDecoder& coder) {
+  return coder.exhausted();
+}
 template <class Coder>
 bool cut_short(const Coder&) {
   return false;
@@ -32,21 +34,30 @@ std::uint32_t twelve_classes(std::uint32_t x) {
   return static_cast<std::uint32_t>(std::lower_bound(kLimits.begin(), kLimits.end(), x) - kLimits.begin());
 }
 
-std::uint32_t eight_classes(std::uint32_t x) { return x < 5 ? x : x < 8 ? 5 : x < 16 ? 6 : 7; }
-std::uint32_t six_classes(std::uint32_t x) { return x < 3 ? x : x < 6 ? 3 : x < 12 ? 4 : 5; }
+std::uint32_t eight_classes(std::uint32_t x) {
+  return x < 5 ? x : x < 8 ? 5 : x < 16 ? 6 : 7;
+}
+std::uint32_t six_classes(std::uint32_t x) {
+  return x < 3 ? x : x < 6 ? 3 : x < 12 ? 4 : 5;
+}
 
 std::uint32_t sixteen_classes(std::uint32_t x) {
-  return x < 8 ? x : std::min(7 + static_cast<std::uint32_t>(2 * (std::bit_width(x) - 4) + (x >> (std::bit_width(x) - 2) & 1)), 15U);
+  return x < 8 ? x
+               : std::min(
+                     7 + static_cast<std::uint32_t>(2 * (std::bit_width(x) - 4) + (x >> (std::bit_width(x) - 2) & 1)),
+                     15U);
 }
 
 // 0 for 0, 1 for positive, 2 for negative
-std::uint32_t sign_class(std::int32_t value) { return value == 0 ? 0 : value > 0 ? 1 : 2; }
+std::uint32_t sign_class(std::int32_t value) {
+  return value == 0 ? 0 : value > 0 ? 1 : 2;
+}
 
 // What is known around a coefficient. Magnitudes; 0 outside the band.
 struct Neighbourhood {
   std::uint32_t west = 0, west2 = 0, north = 0, north2 = 0, north_west = 0, north_east = 0;
-  std::uint32_t parent = 0;   // twice the coarser coefficient of the same kind in this place, and those beside it
-  std::uint32_t sisters = 0;  // twice those of the level's bands coded before in this place, and those beside them
+  std::uint32_t parent = 0;      // twice the coarser coefficient of the same kind in this place, and those beside it
+  std::uint32_t sisters = 0;     // twice those of the level's bands coded before in this place, and those beside them
   std::uint32_t surrounded = 0;  // how many of the four neighbours are coded, 0 to 3 or more
 };
 
@@ -161,7 +172,9 @@ class CoefficientCoding::Run {
     const std::uint32_t level = level_of(band), kind = band.kind;
     const std::uint32_t pattern =
         (((std::min(n.west, 2U) * 3 + std::min(n.north, 2U)) * 2 + std::min(n.north_west, 1U)) * 2 +
-         std::min(n.north_east, 1U)) * 4 + std::min(n.west2, 1U) * 2 + std::min(n.north2, 1U);
+         std::min(n.north_east, 1U)) *
+            4 +
+        std::min(n.west2, 1U) * 2 + std::min(n.north2, 1U);
     const std::array<std::uint32_t, 7> zero_contexts = {
         (near12 * 4 + kind) * kLevels + level,
         (parent6 * 8 + near8) * 4 + kind,
@@ -178,9 +191,9 @@ class CoefficientCoding::Run {
 
     const bool negative = code_sign(given < 0, band, r, c);
     const auto wanted = static_cast<std::uint32_t>(std::abs(given));
-    const std::array<std::uint32_t, 4> larger_bases = {near12, parent6 * 6 + sisters6, kind * kLevels + level,
-                                                       std::min(std::max(n.west, n.north), 5U) * 6 +
-                                                           std::min(std::max(n.parent / 2, n.sisters / 2), 5U)};
+    const std::array<std::uint32_t, 4> larger_bases = {
+        near12, parent6 * 6 + sisters6, kind * kLevels + level,
+        std::min(std::max(n.west, n.north), 5U) * 6 + std::min(std::max(n.parent / 2, n.sisters / 2), 5U)};
     std::uint32_t magnitude = 1;
     while (magnitude < kUnary) {
       const std::uint32_t i = magnitude - 1;
@@ -193,7 +206,8 @@ class CoefficientCoding::Run {
     return negative ? -static_cast<std::int32_t>(magnitude) : static_cast<std::int32_t>(magnitude);
   }
 
-  // The value with the least squared error + kBitPrice * bits. zero_advantage: bits that a zero costs less than another.
+  // The value with the least squared error + kBitPrice * bits. zero_advantage: bits that a zero costs less than
+  // another.
   static std::int32_t worthwhile(double wanted, double zero_advantage) {
     const double magnitude = std::abs(wanted);
     auto value = static_cast<std::int32_t>(magnitude + 0.5 - kBitPrice / 2);

@@ -1,8 +1,8 @@
 #pragma once
 
-// Quantised wavelet coefficients, band by band from coarse to fine: is it zero, its sign, how large is it. Each decision is
-// mixed from several contexts: neighbours, the coarser coefficient in the same place, the bands of the same level coded
-// before (after EBCOT and ECECOW: D. Taubman, 2000; X. Wu, 1997).
+// Quantised wavelet coefficients, band by band from coarse to fine: is it zero, its sign, how large is it. Each
+// decision is mixed from several contexts: neighbours, the coarser coefficient in the same place, the bands of the same
+// level coded before (after EBCOT and ECECOW: D. Taubman, 2000; X. Wu, 1997).
 
 #include <cstdint>
 #include <vector>

@@ -4,7 +4,8 @@
 
 namespace emap {
 
-std::vector<std::uint8_t> coarse_mask(std::uint32_t columns, std::uint32_t rows, const std::vector<std::uint8_t>& mask) {
+std::vector<std::uint8_t> coarse_mask(std::uint32_t columns, std::uint32_t rows,
+                                      const std::vector<std::uint8_t>& mask) {
   assert(mask.size() == std::size_t{columns} * rows);
   std::vector<std::uint8_t> coarse;
   coarse.reserve(std::size_t{halved(columns)} * halved(rows));

@@ -71,7 +71,9 @@ void synthesise(const Line& line) {
 }
 
 // Even positions to the front, odd ones behind them, or back.
-std::uint32_t unmixed(std::uint32_t i, std::uint32_t length) { return i % 2 == 0 ? i / 2 : (length + 1) / 2 + i / 2; }
+std::uint32_t unmixed(std::uint32_t i, std::uint32_t length) {
+  return i % 2 == 0 ? i / 2 : (length + 1) / 2 + i / 2;
+}
 
 struct Size {
   std::uint32_t columns, rows;

@@ -1,11 +1,10 @@
 #pragma once
 
-// The coefficients of a rectangle of which only some samples are known: few that are not zero, and right where the samples
-// are known. Iterated thresholding: the unknown samples are what the coefficients so far make of them, and the threshold
-// falls from round to round (I. Daubechies, M. Defrise, C. De Mol, 2004; M. Elad and others, 2005).
+// The coefficients of a rectangle of which only some samples are known: few that are not zero, and right where the
+// samples are known. Iterated thresholding: the unknown samples are what the coefficients so far make of them, and the
+// threshold falls from round to round (I. Daubechies, M. Defrise, C. De Mol, 2004; M. Elad and others, 2005).
 
 #include <cstdint>
-#include <cstdlib>
 #include <vector>
 
 #include "libemap/coding/shape_adaptive_wavelet.h"
@@ -13,9 +12,9 @@
 namespace emap {
 
 struct FitOptions {
-  int rounds = getenv("RO")?atoi(getenv("RO")):12;
-  double first_threshold = getenv("FT")?atof(getenv("FT")):24;   // in steps, of the first round
-  double last_threshold = getenv("LT")?atof(getenv("LT")):0.55;  // in steps
+  int rounds = 20;
+  double first_threshold = 50;  // in steps, of the first round
+  double last_threshold = 0.7;  // in steps
 };
 
 // samples: rows x columns, not a number where unknown. support: the coefficients that may differ from 0 (the layout of

@@ -302,11 +302,13 @@ Result<DecodedStream> read_stream(std::span<const std::uint8_t> bytes) {
   decoded.maps.diagonal = header.frame.box.diagonal();
   decoded.maps.box_minimum = header.frame.box.minimum;
   RangeDecoder decoder(bytes.subspan(parsed->bytes));
-  const Result<std::vector<CodedPlane>> planes = read_planes(decoder, header, coder->half_resolution_masks, bytes.size());
+  const Result<std::vector<CodedPlane>> planes =
+      read_planes(decoder, header, coder->half_resolution_masks, bytes.size());
   if (!planes) return planes.error();
   decoded.parts.header = parsed->bytes;
   decoded.parts.planes = decoder.bytes_read();
-  if (const auto error = read_masks(decoder, *planes, coder->half_resolution_masks, header.frame, decoded.maps)) return *error;
+  if (const auto error = read_masks(decoder, *planes, coder->half_resolution_masks, header.frame, decoded.maps))
+    return *error;
   decoded.parts.masks = decoder.bytes_read() - decoded.parts.planes;
   if (const Result<void> read = coder->read(decoder, header.step(), decoded.maps); !read) return read.error();
   decoded.parts.elevations = bytes.size() - decoded.parts.header - decoded.parts.planes - decoded.parts.masks;

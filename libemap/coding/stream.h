@@ -61,7 +61,7 @@ class StreamWriter {
   const ElevationCoder& coder_;
   StreamHeader header_;
   std::vector<CodedPlane> planes_;
-  ElevationMaps maps_;                           // with the masks that the reader will have
+  ElevationMaps maps_;                            // with the masks that the reader will have
   std::vector<std::vector<std::uint8_t>> masks_;  // as they are written
   std::unique_ptr<ElevationWriter> elevations_;
 };

@@ -1,0 +1,42 @@
+#pragma once
+
+// What an encoder needs of a surface: cut into patches once, sampled over quantised planes at any spacing, and measured
+// against what comes out of the decoder. Meshes and point sets alike.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "libemap/elevation/elevation_map.h"
+#include "libemap/partition/partitioning.h"
+#include "libemap/surface/bounding_box.h"
+#include "libemap/surface/surface.h"
+#include "libthin/foundation/result.h"
+
+namespace emap {
+
+class SurfaceToEncode {
+ public:
+  virtual ~SurfaceToEncode() = default;
+
+  virtual bool is_points() const = 0;
+  virtual std::size_t point_count() const = 0;  // what bits per point are counted by: all vertices or points
+  virtual const BoundingBox& box() const = 0;
+  virtual const std::vector<BasePlane>& planes() const = 0;  // before quantisation, one for each patch
+
+  // Of the elements of a patch; a vertex of several triangles comes several times.
+  virtual std::vector<Eigen::Vector3d> positions_of(std::size_t patch) const = 0;
+
+  virtual ElevationMaps resample(std::span<const BasePlane> planes, double spacing) const = 0;
+
+  // E_rms of equation 3.2 between this surface and the decoded one, by fewer samples than a final measurement takes;
+  // infinite where nothing was decoded.
+  virtual double error_of(const ElevationMaps& decoded) const = 0;
+};
+
+// The surface must outlive what is made of it. Errors: as partition_mesh() and partition_points().
+thin::Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(const Mesh& mesh, const PartitionOptions& options);
+thin::Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(const PointSet& points,
+                                                                const PartitionOptions& options);
+
+}  // namespace emap
