@@ -86,6 +86,14 @@ Mesh canonical_mesh(const ElevationMaps& maps, const CanonicalOptions& options) 
   return mesh;
 }
 
+std::vector<std::uint32_t> patches_of_samples(const ElevationMaps& maps) {
+  const std::vector<std::uint32_t> first = first_samples(maps);
+  std::vector<std::uint32_t> patches(first.back());
+  for (std::uint32_t patch = 0; patch < maps.patches.size(); ++patch)
+    std::fill(patches.begin() + first[patch], patches.begin() + first[patch + 1], patch);
+  return patches;
+}
+
 PointSet sample_points(const ElevationMaps& maps) {
   const std::vector<std::uint32_t> first = first_samples(maps);
   PointSet points;

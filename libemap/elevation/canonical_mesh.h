@@ -18,6 +18,9 @@ struct CanonicalOptions {
 // samples of a square one triangle. Patches are not connected.
 Mesh canonical_mesh(const ElevationMaps& maps, const CanonicalOptions& options = {});
 
+// The patch of each vertex of the mesh, and of each point.
+std::vector<std::uint32_t> patches_of_samples(const ElevationMaps& maps);
+
 // All samples with normals from the elevations' differences.
 PointSet sample_points(const ElevationMaps& maps);
 

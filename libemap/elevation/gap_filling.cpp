@@ -1,8 +1,10 @@
 #include "libemap/elevation/gap_filling.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <queue>
+#include <unordered_map>
 #include <unordered_set>
 
 #include "libemap/elevation/canonical_mesh.h"
@@ -33,8 +35,10 @@ struct Candidate {
 
 class GapFiller {
  public:
-  GapFiller(double spacing, Mesh& mesh, const GapFillingOptions& options)
+  GapFiller(double spacing, std::span<const std::uint32_t> patch_of_vertex, Mesh& mesh,
+            const GapFillingOptions& options)
       : spacing_(spacing),
+        patch_of_vertex_(patch_of_vertex),
         mesh_(mesh),
         options_(options),
         boundary_degree_(mesh.positions.size(), 0),
@@ -50,17 +54,25 @@ class GapFiller {
     const std::size_t triangles_before = mesh_.triangles.size();
     for (const BoundaryEdge& edge : boundary)
       propose(edge.from, edge.to, edge.opposite, reach_of((at(edge.from) - at(edge.to)).norm()));
-    while (!candidates_.empty()) {
-      const Candidate candidate = candidates_.top();
-      candidates_.pop();
-      if (is_open(candidate) && fits(candidate)) insert(candidate);
-    }
+    insert_best_first();
+    within_small_holes_ = true;
+    for (const BoundaryEdge& edge : edges_of_small_holes())
+      propose(edge.from, edge.to, edge.opposite, reach_of((at(edge.from) - at(edge.to)).norm()));
+    insert_best_first();
     result.inserted = mesh_.triangles.size() - triangles_before;
     result.edges_left = open_edges_;
     return result;
   }
 
  private:
+  void insert_best_first() {
+    while (!candidates_.empty()) {
+      const Candidate candidate = candidates_.top();
+      candidates_.pop();
+      if (is_open(candidate) && fits(candidate)) insert(candidate);
+    }
+  }
+
   static std::uint64_t directed(std::uint32_t from, std::uint32_t to) { return (std::uint64_t{from} << 32) | to; }
   bool is_used(std::uint32_t from, std::uint32_t to) const { return used_.contains(directed(from, to)); }
   bool is_boundary(std::uint32_t from, std::uint32_t to) const { return is_used(from, to) && !is_used(to, from); }
@@ -126,13 +138,40 @@ class GapFiller {
     const double from_squared = (at(tip) - at(from)).squaredNorm(), to_squared = (at(tip) - at(to)).squaredNorm();
     const double side_squared = (at(from) - at(to)).squaredNorm();
     const double longest_squared = std::max({from_squared, to_squared, side_squared});
-    if (std::max(from_squared, to_squared) > reach * reach) return kNever;
+    if (!may_join(from, tip, from_squared, reach) || !may_join(tip, to, to_squared, reach)) return kNever;
     const Eigen::Vector3d scaled_normal = (at(from) - at(to)).cross(at(tip) - at(to));
     const double length = scaled_normal.norm();
     if (!(length > kLeastHeight * longest_squared)) return kNever;
     const double cosine = normal.dot(scaled_normal) / length;
     if (cosine < kSharpestFold) return kNever;
     return (from_squared + to_squared) * (2 - cosine);
+  }
+
+  // Sides that are there already may be of any length.
+  bool may_join(std::uint32_t from, std::uint32_t to, double length_squared, double reach) const {
+    const bool within =
+        !within_small_holes_ && !patch_of_vertex_.empty() && patch_of_vertex_[from] == patch_of_vertex_[to];
+    const double longest = within ? reach * options_.reach_within / options_.reach : reach;
+    return length_squared <= longest * longest || is_used(to, from);
+  }
+
+  // The open edges on loops that are short enough.
+  std::vector<BoundaryEdge> edges_of_small_holes() const {
+    std::unordered_map<std::uint32_t, std::vector<BoundaryEdge>> leaving;  // open edges by where they come from
+    std::vector<BoundaryEdge> open = boundary_edges(mesh_), small;
+    for (const BoundaryEdge& edge : open) leaving[edge.from].push_back(edge);
+    for (const BoundaryEdge& edge : open) {
+      std::uint32_t vertex = edge.to;
+      std::size_t edges = 1;
+      // Where loops meet at a vertex, either may be followed: the count then decides about both.
+      for (; vertex != edge.from && edges <= options_.small_hole_edges; ++edges) {
+        const auto next = leaving.find(vertex);
+        if (next == leaving.end()) break;
+        vertex = next->second.front().to;
+      }
+      if (vertex == edge.from && edges <= options_.small_hole_edges) small.push_back(edge);
+    }
+    return small;
   }
 
   bool is_open(const Candidate& candidate) const {
@@ -175,6 +214,7 @@ class GapFiller {
   }
 
   double spacing_;
+  std::span<const std::uint32_t> patch_of_vertex_;
   Mesh& mesh_;
   const GapFillingOptions& options_;
   std::vector<std::uint32_t> boundary_degree_;  // boundary edges at each vertex
@@ -183,17 +223,20 @@ class GapFiller {
   std::priority_queue<Candidate> candidates_;
   std::vector<Candidate> found_;
   std::size_t open_edges_ = 0;
+  bool within_small_holes_ = false;
 };
 
 }  // namespace
 
-GapFilling fill_gaps(double spacing, Mesh& mesh, const GapFillingOptions& options) {
-  return GapFiller(spacing, mesh, options).run();
+GapFilling fill_gaps(double spacing, std::span<const std::uint32_t> patch_of_vertex, Mesh& mesh,
+                     const GapFillingOptions& options) {
+  assert(patch_of_vertex.empty() || patch_of_vertex.size() == mesh.positions.size());
+  return GapFiller(spacing, patch_of_vertex, mesh, options).run();
 }
 
 ClosedMesh closed_mesh(const ElevationMaps& maps, const GapFillingOptions& options) {
   ClosedMesh closed{canonical_mesh(maps), {}};
-  closed.filling = fill_gaps(maps.spacing, closed.mesh, options);
+  closed.filling = fill_gaps(maps.spacing, patches_of_samples(maps), closed.mesh, options);
   return closed;
 }
 

@@ -26,6 +26,7 @@ struct ResampleArguments {
   PartitionArguments partition;
   double mu = 1;
   bool open = false;
+  GapFillingOptions filling;
 };
 
 class Stopwatch {
@@ -53,7 +54,7 @@ int resample(const ResampleArguments& arguments) {
   const double spacing = spacing_for_resolution(*mesh, *partition, planes, arguments.mu);
   const ElevationMaps maps = resample_mesh(*mesh, *partition, planes, spacing);
   watch.say("resample");
-  const ClosedMesh closed = arguments.open ? ClosedMesh{canonical_mesh(maps), {}} : closed_mesh(maps);
+  const ClosedMesh closed = arguments.open ? ClosedMesh{canonical_mesh(maps), {}} : closed_mesh(maps, arguments.filling);
   const Mesh& resampled = closed.mesh;
   watch.say("mesh");
   if (const thin::Result<void> written = write_ply(arguments.output, resampled); !written) return fail(written.error());
@@ -77,6 +78,8 @@ void add_resample_command(CLI::App& program, Action& action) {
   command->add_option("input", arguments->input, "Mesh to sample")->required()->type_name("FILE");
   command->add_option("output", arguments->output, "Mesh of the samples")->required()->type_name("OUT.ply");
   command->add_option("--mu", arguments->mu, "Sampling interval; 1: as many samples as there are vertices [1]")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--reach", arguments->filling.reach, "Widest gap to close, in sampling intervals [3]")
       ->check(CLI::PositiveNumber);
   command->add_flag("--open", arguments->open, "Leave the gaps between patches open");
   add_partition_options(*command, arguments->partition);
