@@ -40,8 +40,7 @@ class Search {
  public:
   Search(const SurfaceToEncode& surface, const EncoderOptions& options)
       : surface_(surface), options_(options), diagonal_(stream_frame(surface.box(), 1).box.diagonal()) {
-    if (options.bits_per_point)
-      most_bytes_ = *options.bits_per_point * static_cast<double>(surface.point_count()) / 8;
+    if (options.bits_per_point) most_bytes_ = *options.bits_per_point * static_cast<double>(surface.point_count()) / 8;
     if (options.psnr_db) largest_error_ = diagonal_ * std::pow(10.0, -*options.psnr_db / 20);
   }
 
@@ -74,8 +73,7 @@ class Search {
   // spacing.
   std::uint32_t first_guess() const {
     const double per_coarse_sample = options_.coder->half_resolution_masks ? 2 : 1;
-    if (options_.psnr_db)
-      return scaled(1, per_coarse_sample * 350 * std::pow(10.0, (*options_.psnr_db - 80) / 50));
+    if (options_.psnr_db) return scaled(1, per_coarse_sample * 350 * std::pow(10.0, (*options_.psnr_db - 80) / 50));
     constexpr double kAreaOfDiagonalSquared = 0.8;  // of usual models
     return scaled(1, per_coarse_sample * std::sqrt(8 * most_bytes_ / kAreaOfDiagonalSquared));
   }
@@ -191,13 +189,13 @@ class Search {
     if (!trial.meets_target && options_.bits_per_point)
       return Error{ErrorKind::configuration,
                    fmt::format("{} bits per point, {:.0f} bytes, are fewer than planes and masks of {} patches take; "
-                               "allow more or a wider aperture", *options_.bits_per_point, most_bytes_,
-                               surface_.planes().size())};
+                               "allow more or a wider aperture",
+                               *options_.bits_per_point, most_bytes_, surface_.planes().size())};
     if (!trial.meets_target)
       return Error{ErrorKind::configuration,
                    fmt::format("{} dB were not reached; the best was {:.2f} dB at {} samples to the diagonal; ask for "
-                               "less, or for more with --resolution", *options_.psnr_db, psnr_db(trial.error),
-                               trial.samples_per_diagonal)};
+                               "less, or for more with --resolution",
+                               *options_.psnr_db, psnr_db(trial.error), trial.samples_per_diagonal)};
     const std::size_t patches = read_stream_header(trial.stream)->patch_count;
     return Encoded{std::move(trial.stream), psnr_db(trial.error), trial.samples_per_diagonal, patches};
   }

@@ -1,7 +1,7 @@
 #pragma once
 
-// From a surface to a stream of a wanted size or quality (thesis, 4.2.1). The encoder chooses the resolution of the maps
-// and the quantiser's step; what it steers by is the distance between the surface and what a decoder makes of the
+// From a surface to a stream of a wanted size or quality (thesis, 4.2.1). The encoder chooses the resolution of the
+// maps and the quantiser's step; what it steers by is the distance between the surface and what a decoder makes of the
 // stream. The same bytes for any number of threads.
 
 #include <cstdint>
@@ -33,8 +33,8 @@ struct Encoded {
   std::size_t patch_count = 0;
 };
 
-// Errors: configuration (a rate that not even planes and masks fit into, a quality that no resolution reaches); input (a
-// surface without extent).
+// Errors: configuration (a rate that not even planes and masks fit into, a quality that no resolution reaches); input
+// (a surface without extent).
 thin::Result<Encoded> encode_surface(const SurfaceToEncode& surface, const EncoderOptions& options);
 
 }  // namespace emap

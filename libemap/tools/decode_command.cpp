@@ -36,8 +36,7 @@ int decode(const Arguments& arguments) {
   else
     closed = closed_mesh(decoded->maps);
   const double surface_seconds = watch.lap_seconds();
-  const auto written =
-      as_points ? write_ply(arguments.output, points) : write_ply(arguments.output, closed.mesh);
+  const auto written = as_points ? write_ply(arguments.output, points) : write_ply(arguments.output, closed.mesh);
   if (!written) return fail(written.error());
   const double write_seconds = watch.lap_seconds();
   std::string text = as_points
@@ -61,7 +60,8 @@ void add_decode_command(CLI::App& program, Action& action) {
   command->add_option("output", arguments->output, "Decoded model")->required()->type_name("OUT.ply");
   CLI::Option* points =
       command->add_flag("--points", arguments->as_points, "Points with normals [where points were encoded]");
-  command->add_flag("--mesh", arguments->as_mesh, "A mesh, its gaps closed [where a mesh was encoded]")->excludes(points);
+  command->add_flag("--mesh", arguments->as_mesh, "A mesh, its gaps closed [where a mesh was encoded]")
+      ->excludes(points);
   command->add_flag("--times", arguments->with_times, "Say how long each step took");
   command->callback([arguments, &action] { action = [arguments] { return decode(*arguments); }; });
 }

@@ -65,13 +65,13 @@ int encode(const Arguments& arguments) {
   if (!result) return fail(result.error());
   if (const auto written = thin::write_file_bytes(arguments.output, result->stream); !written)
     return fail(written.error());
-  std::fputs(fmt::format("{}: {} bytes, {:.3f} bits per {}, {:.2f} dB, {} patches, {} samples to the diagonal\n",
-                         arguments.output, result->stream.size(),
-                         8 * static_cast<double>(result->stream.size()) / static_cast<double>(count),
-                         as_points ? "point" : "vertex", result->psnr_db, result->patch_count,
-                         result->samples_per_diagonal)
-                 .c_str(),
-             stdout);
+  std::fputs(
+      fmt::format("{}: {} bytes, {:.3f} bits per {}, {:.2f} dB, {} patches, {} samples to the diagonal\n",
+                  arguments.output, result->stream.size(),
+                  8 * static_cast<double>(result->stream.size()) / static_cast<double>(count),
+                  as_points ? "point" : "vertex", result->psnr_db, result->patch_count, result->samples_per_diagonal)
+          .c_str(),
+      stdout);
   return std::fflush(stdout) == 0 ? 0 : thin::exit_code(thin::ErrorKind::temporary);
 }
 
@@ -104,8 +104,9 @@ void add_encode_command(CLI::App& program, Action& action) {
       ->excludes(rate);
   command->add_flag("--points", arguments->as_points, "Take a mesh's vertices without its triangles");
   command->add_option("--coder", arguments->coder, coder_help())->check(CLI::IsMember(coder_names()));
-  command->add_option("--resolution", arguments->samples_per_diagonal,
-                      "Samples to the bounding box's diagonal [the encoder's choice]")
+  command
+      ->add_option("--resolution", arguments->samples_per_diagonal,
+                   "Samples to the bounding box's diagonal [the encoder's choice]")
       ->check(CLI::Range(16, 20000));
   add_partition_options(*command, arguments->partition);
   command->add_option("--threads", arguments->threads, "Threads at most [all cores]")->check(CLI::NonNegativeNumber);

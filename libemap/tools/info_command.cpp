@@ -43,8 +43,10 @@ std::string text_of(const DecodedStream& stream) {
       kStreamVersion, find_elevation_coder(header.coder)->name, header.from_points ? "points" : "a mesh",
       header.frame.box.diagonal(), header.frame.spacing(), header.frame.samples_per_diagonal, header.step(),
       header.patch_count, samples_of(stream.maps), bytes);
-  for (const auto& [name, count] : {std::pair("header", parts.header), {"planes", parts.planes},
-                                    {"masks", parts.masks}, {"elevations", parts.elevations}})
+  for (const auto& [name, count] : {std::pair("header", parts.header),
+                                    {"planes", parts.planes},
+                                    {"masks", parts.masks},
+                                    {"elevations", parts.elevations}})
     text += fmt::format("    {:<17} {:>9}  {:5.1f} %\n", name, count,
                         100 * static_cast<double>(count) / static_cast<double>(bytes));
   text += fmt::format("\n  {:>6}  {:>8}  {:>8}  {:>9}\n", "patch", "columns", "rows", "samples");

@@ -54,7 +54,8 @@ int resample(const ResampleArguments& arguments) {
   const double spacing = spacing_for_resolution(*mesh, *partition, planes, arguments.mu);
   const ElevationMaps maps = resample_mesh(*mesh, *partition, planes, spacing);
   watch.say("resample");
-  const ClosedMesh closed = arguments.open ? ClosedMesh{canonical_mesh(maps), {}} : closed_mesh(maps, arguments.filling);
+  const ClosedMesh closed =
+      arguments.open ? ClosedMesh{canonical_mesh(maps), {}} : closed_mesh(maps, arguments.filling);
   const Mesh& resampled = closed.mesh;
   watch.say("mesh");
   if (const thin::Result<void> written = write_ply(arguments.output, resampled); !written) return fail(written.error());
