@@ -109,8 +109,8 @@ thin::Result<void> read(RangeDecoder& decoder, double step, ElevationMaps& maps)
 ElevationCoder contexts_coder() {
   return {2,
           "contexts",
-          "13/7 wavelet on rectangles with its finest band left out, mixed contexts, coarse masks",
-          true,
+          "13/7 wavelet on rectangles with its finest band left out, mixed contexts",
+          false,
           [](const ElevationMaps& maps) -> std::unique_ptr<ElevationWriter> {
             return std::make_unique<ContextsWriter>(maps);
           },

@@ -13,6 +13,13 @@ namespace emap {
 // Places in the map (row * columns + column), counter-clockwise seen against the normal.
 using GridTriangle = std::array<std::size_t, 3>;
 
+// Whether the square whose lowest row and column are those of sample `a` is cut from its lower right to its upper left:
+// along its shorter diagonal, and the other one where they are equal. REQUIRES: all four samples supported
+inline bool falls(const ElevationPatch& patch, std::size_t a) {
+  const std::size_t b = a + 1, d = a + patch.columns, c = d + 1;
+  return std::abs(patch.elevation[a] - patch.elevation[c]) > std::abs(patch.elevation[b] - patch.elevation[d]);
+}
+
 // Calls visit(triangle) for the triangles of each square: two along its shorter diagonal (the one from the sample of
 // the lowest row and column, where they are equal), one where one of its samples is missing.
 template <class Visitor>
@@ -27,8 +34,7 @@ void visit_grid_triangles(const ElevationPatch& patch, const Visitor& visit) {
         if (!patch.mask[b]) visit(GridTriangle{a, c, d});
         if (!patch.mask[c]) visit(GridTriangle{a, b, d});
         if (!patch.mask[d]) visit(GridTriangle{a, b, c});
-      } else if (std::abs(patch.elevation[a] - patch.elevation[c]) <=
-                 std::abs(patch.elevation[b] - patch.elevation[d])) {
+      } else if (!falls(patch, a)) {
         visit(GridTriangle{a, b, c});
         visit(GridTriangle{a, c, d});
       } else {

@@ -10,6 +10,7 @@
 
 #include "libemap/elevation/elevation_map.h"
 #include "libemap/partition/partition.h"
+#include "libemap/surface/mls_surface.h"
 #include "libemap/surface/surface.h"
 
 namespace emap {
@@ -19,6 +20,14 @@ namespace emap {
 // REQUIRES: spacing > 0, planes.size() == partition.patches.size(), partition.patch_of.size() == triangles
 ElevationMaps resample_mesh(const Mesh& mesh, const Partition& partition, std::span<const BasePlane> planes,
                             double spacing);
+
+// The same for points: samples lie where lines along the normal meet the MLS surface (Newton-like, figure 3.9), and
+// belong to the patch of the input point nearest to where they do, as long as that is as near as the points are to each
+// other. REQUIRES: a normal for each point
+ElevationMaps resample_points(const PointSet& points, const MlsSurface& surface, const Partition& partition,
+                              std::span<const BasePlane> planes, double spacing);
+double spacing_for_resolution(const PointSet& points, const Partition& partition, std::span<const BasePlane> planes,
+                              double mu);
 
 // The spacing at which the maps hold about as many samples as the model has vertices, times mu.
 double spacing_for_resolution(const Mesh& mesh, const Partition& partition, std::span<const BasePlane> planes,

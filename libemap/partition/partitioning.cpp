@@ -1,5 +1,6 @@
 #include "libemap/partition/partitioning.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,6 +9,7 @@
 #include "libemap/partition/islands.h"
 #include "libemap/partition/lloyd_partition.h"
 #include "libemap/partition/patch_merging.h"
+#include "libemap/partition/split_merge.h"
 #include "libemap/surface/bounding_box.h"
 
 namespace emap {
@@ -19,9 +21,8 @@ using thin::Result;
 
 constexpr std::size_t kGroupSize = 20;      // elements a group
 constexpr double kGroupSpreadDegrees = 25;  // of normals within a group
-constexpr double kFineCells = 0.6;          // cell sizes, in square roots of the mean area of an element
-constexpr double kCoarseCells = 0.6;
-constexpr double kCoarseTolerance = 1.5;  // height tolerance among groups, in the same unit
+constexpr double kCellSize = 0.6;           // of footprints, in square roots of the mean area of an element
+constexpr double kDiscTolerance = 1.5;      // height tolerance of discs, in the same unit
 
 double mean_element_size(const ElementGraph& graph) {
   return std::sqrt(graph.total_area() / static_cast<double>(graph.size()));
@@ -30,24 +31,38 @@ double mean_element_size(const ElementGraph& graph) {
 constexpr std::size_t kIslandElements = 64;  // unconnected parts of at most so many elements are linked
 constexpr double kIslandReach = 8;           // to what lies within so many element sizes
 
+RoughPartition rough_partition(const ElementGraph& groups, const Footprints& discs, const PartitionOptions& options) {
+  if (options.method == PartitionMethod::split_merge)
+    return split_merge_partition(groups, discs,
+                                 {.split_degrees = std::min(options.split_degrees, options.aperture_degrees),
+                                  .aperture_degrees = options.aperture_degrees,
+                                  .strict = options.strict});
+  RoughPartition seeded = lloyd_partition(
+      groups, discs, {.aperture_degrees = options.aperture_degrees, .least_patches = options.least_patches});
+  return merge_patches(groups, discs, std::move(seeded),
+                       {.aperture_degrees = options.aperture_degrees,
+                        .least_patches = static_cast<std::size_t>(options.least_patches),
+                        .strict = options.strict});
+}
+
 Partition partition_elements(const ElementGraph& graph, const Footprints& footprints, const BoundingBox& box,
                              const PartitionOptions& options) {
   const Eigen::Vector3d origin = (box.minimum + box.maximum) / 2;
   const Coarsening coarsening = coarsen(graph, kGroupSize, kGroupSpreadDegrees);
   const double group_size = mean_element_size(coarsening.graph);
-  const DiscFootprints discs(coarsening.graph, origin, kCoarseCells * group_size,
-                             options.strict ? kCoarseTolerance * group_size : std::numeric_limits<double>::infinity());
-  const RoughPartition seeded = lloyd_partition(
-      coarsening.graph, discs, {.aperture_degrees = options.aperture_degrees, .least_patches = options.least_patches});
-  const RoughPartition rough = merge_patches(coarsening.graph, discs, seeded,
-                                             {.aperture_degrees = options.aperture_degrees,
-                                              .least_patches = static_cast<std::size_t>(options.least_patches),
-                                              .strict = options.strict});
+  const DiscFootprints discs(coarsening.graph, origin, kCellSize * group_size,
+                             options.strict ? kDiscTolerance * group_size : std::numeric_limits<double>::infinity());
+  const RoughPartition rough = rough_partition(coarsening.graph, discs, options);
   const double scrap_error = options.strict ? options.scrap_error * box.diagonal() : 0;
   return finish_partition(graph, footprints, coarsening, rough,
                           {.aperture_degrees = options.aperture_degrees,
                            .scrap_error = scrap_error,
                            .optimise_boundaries = options.optimise_boundaries});
+}
+
+void link_islands(ElementGraph& graph) {
+  if (const std::vector<AdjacentPair> links = island_links(graph, kIslandElements, kIslandReach); !links.empty())
+    add_links(links, graph);
 }
 
 double fold_tolerance(const PartitionOptions& options, double diagonal) {
@@ -91,12 +106,27 @@ Result<Partition> partition_mesh(const Mesh& mesh, const PartitionOptions& optio
   ElementGraph graph = mesh_graph(mesh, options.smoothing_rounds);
   if (!(graph.total_area() > 0))
     return Error{ErrorKind::input, "no triangle of the mesh has an area; there is no surface to make patches of"};
-  if (const std::vector<AdjacentPair> links = island_links(graph, kIslandElements, kIslandReach); !links.empty())
-    add_links(links, graph);
+  link_islands(graph);
   const BoundingBox box = bounding_box(mesh.positions);
   const Eigen::Vector3d origin = (box.minimum + box.maximum) / 2;
-  const TriangleFootprints footprints(mesh, origin, kFineCells * mean_element_size(graph),
+  const TriangleFootprints footprints(mesh, origin, kCellSize * mean_element_size(graph),
                                       fold_tolerance(options, box.diagonal()));
+  return partition_elements(graph, footprints, box, options);
+}
+
+Result<Partition> partition_points(const PointSet& points, const PartitionOptions& options) {
+  if (points.positions.size() < 3)
+    return Error{ErrorKind::input, "there are fewer than three points: they make no surface"};
+  if (points.normals.size() != points.positions.size())
+    return Error{ErrorKind::input, "the points have no normals; they must be found first"};
+  ElementGraph graph = point_graph(points, options.neighbour_count, options.smoothing_rounds);
+  if (!(graph.total_area() > 0)) return Error{ErrorKind::input, "all points lie at one place: they make no surface"};
+  link_islands(graph);
+  const BoundingBox box = bounding_box(points.positions);
+  // Tangent discs of neighbouring points meet at different heights: by their size where the surface is rough.
+  const double size = mean_element_size(graph);
+  const double tolerance = std::max(fold_tolerance(options, box.diagonal()), kDiscTolerance * size);
+  const DiscFootprints footprints(graph, (box.minimum + box.maximum) / 2, kCellSize * size, tolerance);
   return partition_elements(graph, footprints, box, options);
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "libemap/surface/bounding_box.h"
+#include "libemap/surface/mls_surface.h"
 #include "libemap/surface/surface_samples.h"
 #include "libemap/surface/triangle_tree.h"
 #include "libthin/foundation/parallel.h"
@@ -26,6 +27,10 @@ std::vector<Eigen::Vector3d> samples_of(const Model& model, const ComparisonOpti
 }
 
 DistanceSquared distance_to(const Model& model) {
+  if (!model.is_mesh()) {
+    const auto surface = std::make_shared<MlsSurface>(model.positions);
+    return [surface](const Eigen::Vector3d& point) { return (surface->closest(point).position - point).squaredNorm(); };
+  }
   const auto tree = std::make_shared<TriangleTree>(Mesh{model.positions, model.triangles});
   return [tree](const Eigen::Vector3d& point) { return tree->closest(point).distance_squared; };
 }

@@ -13,6 +13,7 @@
 
 #include "libemap/partition/partitioning.h"
 #include "libemap/surface/model_file.h"
+#include "libemap/surface/point_normals.h"
 #include "libemap/tools/commands.h"
 #include "libemap/tools/failure.h"
 #include "libemap/tools/partition_options.h"
@@ -23,7 +24,7 @@ namespace {
 struct Arguments {
   std::string input, output;
   PartitionArguments partition;
-  bool every_patch = false;
+  bool every_patch = false, as_points = false;
 };
 
 // Neighbouring numbers get colours far apart: steps of the golden ratio around the colour wheel.
@@ -83,17 +84,33 @@ int show(const thin::Result<Partition>& partition, const Arguments& arguments, d
   return std::fflush(stdout) == 0 ? 0 : thin::exit_code(thin::ErrorKind::temporary);
 }
 
-int partition(const Arguments& arguments) {
-  const auto seconds_since = [](std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+int partition_as_mesh(const Arguments& arguments) {
   const thin::Result<Mesh> mesh = read_mesh(arguments.input);
   if (!mesh) return fail(mesh.error());
   const auto start = std::chrono::steady_clock::now();
-  const thin::Result<Partition> result = partition_mesh(*mesh, arguments.partition.options());
-  return show(result, arguments, seconds_since(start), [&](const std::vector<Colour>& colours) {
+  const thin::Result<Partition> partition = partition_mesh(*mesh, arguments.partition.options());
+  return show(partition, arguments, seconds_since(start), [&](const std::vector<Colour>& colours) {
     return write_ply(arguments.output, *mesh, {.triangle_colours = colours});
   });
+}
+
+int partition_as_points(const Arguments& arguments) {
+  thin::Result<PointSet> points = read_points(arguments.input);
+  if (!points) return fail(points.error());
+  const auto start = std::chrono::steady_clock::now();
+  ensure_normals(*points);
+  const thin::Result<Partition> partition = partition_points(*points, arguments.partition.options());
+  return show(partition, arguments, seconds_since(start), [&](const std::vector<Colour>& colours) {
+    return write_ply(arguments.output, *points, {.vertex_colours = colours});
+  });
+}
+
+int partition(const Arguments& arguments) {
+  return arguments.as_points ? partition_as_points(arguments) : partition_as_mesh(arguments);
 }
 
 }  // namespace
@@ -104,6 +121,7 @@ void add_partition_command(CLI::App& program, Action& action) {
   command->add_option("input", arguments->input, "Model to cut")->required()->type_name("FILE");
   command->add_option("output", arguments->output, "Coloured model")->required()->type_name("OUT.ply");
   add_partition_options(*command, arguments->partition);
+  command->add_flag("--points", arguments->as_points, "Take the vertices alone");
   command->add_flag("--all", arguments->every_patch, "List every patch");
   command->callback([arguments, &action] { action = [arguments] { return partition(*arguments); }; });
 }
