@@ -5,8 +5,11 @@
 #include <limits>
 
 #include "libemap/elevation/base_plane.h"
+#include "libemap/elevation/canonical_mesh.h"
 #include "libemap/elevation/gap_filling.h"
 #include "libemap/elevation/resampling.h"
+#include "libemap/surface/mls_surface.h"
+#include "libemap/surface/point_normals.h"
 #include "libemap/surface/surface_samples.h"
 #include "libemap/surface/triangle_tree.h"
 #include "libthin/foundation/parallel.h"
@@ -15,8 +18,11 @@ namespace emap {
 namespace {
 
 using Eigen::Vector3d;
+using thin::Result;
+using Made = std::unique_ptr<SurfaceToEncode>;
 
 constexpr std::size_t kSamples = 60000;
+constexpr double kPointSpacings = 0.6;  // of the dense mesh that stands for a point set's MLS surface
 
 double root_mean_square_distance(const std::vector<Vector3d>& points, const TriangleTree& tree) {
   if (points.empty()) return std::numeric_limits<double>::infinity();
@@ -29,32 +35,40 @@ double root_mean_square_distance(const std::vector<Vector3d>& points, const Tria
   return std::sqrt(sum / static_cast<double>(points.size()));
 }
 
-class MeshToEncode : public SurfaceToEncode {
+// A partitioned mesh, and the surface that decoded ones are measured against.
+class PartitionedMesh : public SurfaceToEncode {
  public:
-  MeshToEncode(const Mesh& mesh, Partition partition)
-      : mesh_(mesh),
-        partition_(std::move(partition)),
-        elements_(partition_.elements_of_patches()),
-        planes_(base_planes(mesh, partition_)),
-        box_(bounding_box(mesh.positions)),
-        tree_(mesh),
-        samples_(sample_surface(mesh, kSamples, 1)) {}
+  struct Content {
+    Mesh mesh;
+    Partition partition;
+    std::vector<BasePlane> planes;
+    BoundingBox box;
+    bool is_points = false;
+    std::size_t point_count = 0;
+  };
 
-  bool is_points() const override { return false; }
-  std::size_t point_count() const override { return mesh_.positions.size(); }
-  const BoundingBox& box() const override { return box_; }
-  const std::vector<BasePlane>& planes() const override { return planes_; }
+  PartitionedMesh(Content content, const Mesh& measured)
+      : content_(std::move(content)),
+        elements_(content_.partition.elements_of_patches()),
+        tree_(measured),
+        samples_(sample_surface(measured, kSamples, 1)) {}
+
+  bool is_points() const override { return content_.is_points; }
+  std::size_t point_count() const override { return content_.point_count; }
+  const BoundingBox& box() const override { return content_.box; }
+  const std::vector<BasePlane>& planes() const override { return content_.planes; }
 
   std::vector<Vector3d> positions_of(std::size_t patch) const override {
     std::vector<Vector3d> positions;
     positions.reserve(3 * elements_[patch].size());
     for (const std::uint32_t triangle : elements_[patch])
-      for (const std::uint32_t vertex : mesh_.triangles[triangle]) positions.push_back(mesh_.positions[vertex]);
+      for (const std::uint32_t vertex : content_.mesh.triangles[triangle])
+        positions.push_back(content_.mesh.positions[vertex]);
     return positions;
   }
 
   ElevationMaps resample(std::span<const BasePlane> planes, double spacing) const override {
-    return resample_mesh(mesh_, partition_, planes, spacing);
+    return resample_mesh(content_.mesh, content_.partition, planes, spacing);
   }
 
   double error_of(const ElevationMaps& decoded) const override {
@@ -65,25 +79,51 @@ class MeshToEncode : public SurfaceToEncode {
   }
 
  private:
-  const Mesh& mesh_;
-  Partition partition_;
+  Content content_;
   std::vector<std::vector<std::uint32_t>> elements_;
-  std::vector<BasePlane> planes_;
-  BoundingBox box_;
   TriangleTree tree_;
   std::vector<Vector3d> samples_;
 };
 
 }  // namespace
 
-thin::Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(const Mesh& mesh, const PartitionOptions& options) {
-  thin::Result<Partition> partition = partition_mesh(mesh, options);
+Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(Mesh mesh, const PartitionOptions& options) {
+  Result<Partition> partition = partition_mesh(mesh, options);
   if (!partition) return partition.error();
-  return std::unique_ptr<SurfaceToEncode>(std::make_unique<MeshToEncode>(mesh, std::move(*partition)));
+  std::vector<BasePlane> planes = base_planes(mesh, *partition);
+  const BoundingBox box = bounding_box(mesh.positions);
+  const std::size_t count = mesh.positions.size();
+  const Mesh measured = mesh;
+  return Made(std::make_unique<PartitionedMesh>(
+      PartitionedMesh::Content{std::move(mesh), std::move(*partition), std::move(planes), box, false, count},
+      measured));
 }
 
-thin::Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(const PointSet&, const PartitionOptions&) {
-  return thin::Error{thin::ErrorKind::input, "points: not yet"};
+Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const PartitionOptions& options) {
+  if (points.positions.size() < 3)
+    return thin::Error{thin::ErrorKind::input, "fewer than three points make no surface"};
+  ensure_normals(points);
+  Result<Partition> partition = partition_points(points, options);
+  if (!partition) return partition.error();
+  std::vector<BasePlane> planes = base_planes(points, *partition);
+  const double spacing = spacing_for_resolution(points, *partition, planes, kPointSpacings);
+  // From here on the points' surface is a mesh, finer than the points: MLS projections cost too much to be made at
+  // every spacing that is tried.
+  const MlsSurface surface(points.positions);
+  const ElevationMaps maps = resample_points(points, surface, *partition, planes, spacing);
+  const ClosedMesh closed = closed_mesh(maps);
+  PartitionedMesh::Content content;
+  content.mesh = closed.mesh;
+  content.mesh.triangles.resize(closed.mesh.triangles.size() - closed.filling.inserted);
+  const std::vector<std::uint32_t> patch_of_vertex = patches_of_samples(maps);
+  partition->patch_of.clear();
+  for (const auto& triangle : content.mesh.triangles) partition->patch_of.push_back(patch_of_vertex[triangle[0]]);
+  content.partition = std::move(*partition);
+  content.planes = std::move(planes);
+  content.box = bounding_box(points.positions);
+  content.is_points = true;
+  content.point_count = points.positions.size();
+  return Made(std::make_unique<PartitionedMesh>(std::move(content), closed.mesh));
 }
 
 }  // namespace emap

@@ -34,9 +34,9 @@ class SurfaceToEncode {
   virtual double error_of(const ElevationMaps& decoded) const = 0;
 };
 
-// The surface must outlive what is made of it. Errors: as partition_mesh() and partition_points().
-thin::Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(const Mesh& mesh, const PartitionOptions& options);
-thin::Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(const PointSet& points,
-                                                                const PartitionOptions& options);
+// Errors: as partition_mesh() and partition_points(). Points get normals where they have none; what is sampled and
+// measured of them is a dense mesh of their MLS surface.
+thin::Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(Mesh mesh, const PartitionOptions& options);
+thin::Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const PartitionOptions& options);
 
 }  // namespace emap

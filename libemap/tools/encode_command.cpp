@@ -52,13 +52,8 @@ int encode(const Arguments& arguments) {
   const PartitionOptions partition = arguments.partition.options();
   if (!arguments.quiet) spdlog::info("{}: {} {}", arguments.input, count, as_points ? "points" : "vertices");
 
-  Mesh mesh;
-  PointSet points;
-  if (as_points)
-    points = points_of(std::move(*model));
-  else
-    mesh = mesh_of(std::move(*model));
-  const auto surface = as_points ? points_to_encode(points, partition) : mesh_to_encode(mesh, partition);
+  const auto surface = as_points ? points_to_encode(points_of(std::move(*model)), partition)
+                                 : mesh_to_encode(mesh_of(std::move(*model)), partition);
   if (!surface) return fail(surface.error());
   if (!arguments.quiet) spdlog::info("{} patches", (*surface)->planes().size());
   const thin::Result<Encoded> result = encoded(**surface, arguments);
