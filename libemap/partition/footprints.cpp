@@ -4,9 +4,22 @@
 #include <cmath>
 #include <numbers>
 
+#include "libemap/surface/mesh_normals.h"
 #include "libemap/surface/triangle_raster.h"
 
 namespace emap {
+
+namespace {
+
+constexpr double kUpright = 1e-3;  // cosine between an element's normal and the plane's
+
+std::optional<Slopes> slopes_of(const Eigen::Vector3d& normal, const PlaneAxes& axes) {
+  const double along = axes.normal.dot(normal);
+  if (!(std::abs(along) >= kUpright)) return std::nullopt;
+  return Slopes{static_cast<float>(-axes.u.dot(normal) / along), static_cast<float>(-axes.v.dot(normal) / along)};
+}
+
+}  // namespace
 
 PlaneAxes axes_around(const Eigen::Vector3d& normal) {
   // The coordinate axis that is least along the normal is farthest from degenerate.
@@ -16,7 +29,8 @@ PlaneAxes axes_around(const Eigen::Vector3d& normal) {
   return {u, normal.cross(u), normal};
 }
 
-void TriangleFootprints::append_cells(std::uint32_t element, const PlaneAxes& axes, std::vector<Cell>& cells) const {
+std::optional<Slopes> TriangleFootprints::append_cells(std::uint32_t element, const PlaneAxes& axes,
+                                                       std::vector<Cell>& cells) const {
   std::array<Eigen::Vector3d, 3> corners;  // in cells, cell centres at whole numbers
   for (std::size_t i = 0; i < 3; ++i) {
     const Eigen::Vector3d offset = mesh_.positions[mesh_.triangles[element][i]] - origin_;
@@ -26,13 +40,15 @@ void TriangleFootprints::append_cells(std::uint32_t element, const PlaneAxes& ax
   rasterise_triangle(corners, [&](std::int32_t u, std::int32_t v, double height) {
     cells.push_back({u, v, static_cast<float>(height)});
   });
+  return slopes_of(scaled_normal(mesh_, mesh_.triangles[element]).normalized(), axes);
 }
 
-void DiscFootprints::append_cells(std::uint32_t element, const PlaneAxes& axes, std::vector<Cell>& cells) const {
+std::optional<Slopes> DiscFootprints::append_cells(std::uint32_t element, const PlaneAxes& axes,
+                                                   std::vector<Cell>& cells) const {
   const Eigen::Vector3d& normal = graph_.normals[element];
   const double along = axes.normal.dot(normal);
   // Discs that stand upright leave no footprint.
-  if (std::abs(along) < 1e-3) return;
+  if (std::abs(along) < kUpright) return std::nullopt;
   const Eigen::Vector3d offset = graph_.centres[element] - origin_;
   const double slope_u = -axes.u.dot(normal) / along, slope_v = -axes.v.dot(normal) / along;
   const double centre_u = axes.u.dot(offset), centre_v = axes.v.dot(offset), height = axes.normal.dot(offset);
@@ -49,6 +65,7 @@ void DiscFootprints::append_cells(std::uint32_t element, const PlaneAxes& axes, 
       const double rise = slope_u * du + slope_v * dv;
       if (du * du + dv * dv + rise * rise <= radius_squared) cells.push_back({u, v, static_cast<float>(height + rise)});
     }
+  return slopes_of(normal, axes);
 }
 
 }  // namespace emap

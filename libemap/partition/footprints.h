@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "libemap/partition/element_graph.h"
@@ -23,13 +24,19 @@ struct Cell {
   float height;
 };
 
+struct Slopes {
+  float u = 0, v = 0;  // rise of the height along the axes
+};
+
 class Footprints {
  public:
   virtual ~Footprints() = default;
 
-  // Appends the element's cells; cell (i, j) is centred at ((i + 0.5) * cell_size, (j + 0.5) * cell_size) in the axes'
-  // coordinates, relative to the origin of the footprints (somewhere at the model).
-  virtual void append_cells(std::uint32_t element, const PlaneAxes& axes, std::vector<Cell>& cells) const = 0;
+  // Appends the element's cells, and returns its slopes along u and v, or nothing where it stands upright; cell (i, j)
+  // is centred at ((i + 0.5) * cell_size, (j + 0.5) * cell_size) in the axes' coordinates, relative to the origin of
+  // the footprints (somewhere at the model).
+  virtual std::optional<Slopes> append_cells(std::uint32_t element, const PlaneAxes& axes,
+                                             std::vector<Cell>& cells) const = 0;
 
   double cell_size() const { return cell_size_; }
   // Heights of one sheet may differ by this within a cell.
@@ -47,7 +54,8 @@ class TriangleFootprints : public Footprints {
   // The mesh must outlive the footprints.
   TriangleFootprints(const Mesh& mesh, const Eigen::Vector3d& origin, double cell_size, double height_tolerance)
       : Footprints(cell_size, height_tolerance), mesh_(mesh), origin_(origin) {}
-  void append_cells(std::uint32_t element, const PlaneAxes& axes, std::vector<Cell>& cells) const override;
+  std::optional<Slopes> append_cells(std::uint32_t element, const PlaneAxes& axes,
+                                     std::vector<Cell>& cells) const override;
 
  private:
   const Mesh& mesh_;
@@ -60,7 +68,8 @@ class DiscFootprints : public Footprints {
   // The graph must outlive the footprints.
   DiscFootprints(const ElementGraph& graph, const Eigen::Vector3d& origin, double cell_size, double height_tolerance)
       : Footprints(cell_size, height_tolerance), graph_(graph), origin_(origin) {}
-  void append_cells(std::uint32_t element, const PlaneAxes& axes, std::vector<Cell>& cells) const override;
+  std::optional<Slopes> append_cells(std::uint32_t element, const PlaneAxes& axes,
+                                     std::vector<Cell>& cells) const override;
 
  private:
   const ElementGraph& graph_;

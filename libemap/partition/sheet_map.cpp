@@ -9,6 +9,9 @@ namespace {
 
 constexpr std::uint32_t kNoTile = std::numeric_limits<std::uint32_t>::max();
 
+// What noise may add to a slope over one cell.
+constexpr float kSlopeSlack = 0.5F;
+
 std::uint64_t mixed(std::uint64_t value) {
   value = (value ^ (value >> 31)) * 0x9E3779B97F4A7C15ULL;
   return value ^ (value >> 29);
@@ -26,22 +29,38 @@ std::uint32_t SheetMap::add_patch(const Eigen::Vector3d& normal) {
 bool SheetMap::try_add(std::uint32_t element, std::uint32_t patch) {
   cells_.clear();
   places_.clear();
-  footprints_.append_cells(element, axes_[patch], cells_);
+  const std::optional<Slopes> slopes = footprints_.append_cells(element, axes_[patch], cells_);
   const double tolerance = footprints_.height_tolerance();
   for (const Cell& cell : cells_) {
-    places_.push_back(&height_at(patch, cell));
-    if (std::abs(*places_.back() - cell.height) > tolerance) return false;  // not so where there is no height yet
+    places_.push_back(&place_at(patch, cell.u, cell.v));
+    if (std::abs(places_.back()->height - cell.height) > tolerance)
+      return false;  // not so where there is no height yet
+    if (slopes && std::isfinite(tolerance) && !leads_to_neighbours(cell, *slopes, patch)) return false;
   }
   for (std::size_t i = 0; i < cells_.size(); ++i)
-    if (std::isnan(*places_[i])) *places_[i] = cells_[i].height;
+    if (std::isnan(places_[i]->height)) *places_[i] = {cells_[i].height, slopes.value_or(Slopes{})};
   return true;
 }
 
-float& SheetMap::height_at(std::uint32_t patch, const Cell& cell) {
-  const std::int32_t tile_u = cell.u >> 4, tile_v = cell.v >> 4;
+bool SheetMap::leads_to_neighbours(const Cell& cell, const Slopes& slopes, std::uint32_t patch) {
+  const auto step = static_cast<float>(footprints_.cell_size());
+  const auto slack = static_cast<float>(footprints_.height_tolerance()) +
+                     step * (1 + kSlopeSlack * std::max(std::abs(slopes.u), std::abs(slopes.v)));
+  const auto leads = [&](std::int32_t du, std::int32_t dv) {
+    const Place& other = place_at(patch, cell.u + du, cell.v + dv);
+    if (std::isnan(other.height)) return true;
+    const float own = step * (slopes.u * static_cast<float>(du) + slopes.v * static_cast<float>(dv));
+    const float others = step * (other.slopes.u * static_cast<float>(du) + other.slopes.v * static_cast<float>(dv));
+    const float rise = other.height - cell.height;
+    return rise >= std::min(own, others) - slack && rise <= std::max(own, others) + slack;
+  };
+  return leads(1, 0) && leads(-1, 0) && leads(0, 1) && leads(0, -1);
+}
+
+SheetMap::Place& SheetMap::place_at(std::uint32_t patch, std::int32_t u, std::int32_t v) {
   static_assert(kTileSize == 1 << 4);
-  Tile& tile = tiles_[tile_at(patch, tile_u, tile_v)];
-  return tile[static_cast<std::size_t>((cell.v & (kTileSize - 1)) * kTileSize + (cell.u & (kTileSize - 1)))];
+  Tile& tile = tiles_[tile_at(patch, u >> 4, v >> 4)];
+  return tile[static_cast<std::size_t>((v & (kTileSize - 1)) * kTileSize + (u & (kTileSize - 1)))];
 }
 
 std::size_t SheetMap::slot_of(std::uint32_t patch, std::int32_t tile_u, std::int32_t tile_v) const {
@@ -63,7 +82,7 @@ std::uint32_t SheetMap::tile_at(std::uint32_t patch, std::int32_t tile_u, std::i
     slot = slot_of(patch, tile_u, tile_v);
   }
   table_[slot] = {patch, tile_u, tile_v, static_cast<std::uint32_t>(tiles_.size())};
-  tiles_.emplace_back().fill(std::numeric_limits<float>::quiet_NaN());
+  tiles_.emplace_back().fill({std::numeric_limits<float>::quiet_NaN(), {}});
   return table_[slot].tile;
 }
 

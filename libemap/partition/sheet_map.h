@@ -1,7 +1,7 @@
 #pragma once
 
 // Which cells over each patch's plane the patch has taken, and at which height: so that a patch never takes a second
-// sheet over the same place.
+// sheet over the same place, and no cliff in its elevation map.
 
 #include <array>
 #include <cstdint>
@@ -23,15 +23,21 @@ class SheetMap {
   std::size_t patch_count() const { return axes_.size(); }
 
   // Takes the element into the patch, unless it lies over or under what is there by more than the height tolerance
-  // anywhere. Returns whether it did.
+  // anywhere, or next to something at a height to which neither its slope nor that of the other leads: there another
+  // part of the patch passes behind its rim. Returns whether it did.
   bool try_add(std::uint32_t element, std::uint32_t patch);
 
  private:
   static constexpr std::int32_t kTileSize = 16;
-  using Tile = std::array<float, kTileSize * kTileSize>;
+  struct Place {
+    float height;  // NaN where there is nothing yet
+    Slopes slopes;
+  };
+  using Tile = std::array<Place, kTileSize * kTileSize>;
 
-  // The stored height at a cell, NaN where there is none yet; the tile is made where it is missing.
-  float& height_at(std::uint32_t patch, const Cell& cell);
+  // The tile is made where it is missing.
+  Place& place_at(std::uint32_t patch, std::int32_t u, std::int32_t v);
+  bool leads_to_neighbours(const Cell& cell, const Slopes& slopes, std::uint32_t patch);
   std::uint32_t tile_at(std::uint32_t patch, std::int32_t tile_u, std::int32_t tile_v);
   void grow_table();
 
@@ -47,7 +53,7 @@ class SheetMap {
   std::deque<Tile> tiles_;         // never moved
   std::vector<TableEntry> table_;  // open addressing; a power of two long
   std::vector<Cell> cells_;
-  std::vector<float*> places_;  // of cells_
+  std::vector<Place*> places_;  // of cells_
 };
 
 }  // namespace emap
