@@ -1,5 +1,5 @@
-// simplify_mesh IN OUT.ply VERTICES: Lindstrom and Turk's edge collapse, by CGAL. The rival of docs/results/compression.md
-// is this followed by Draco.
+// simplify_mesh IN OUT.ply VERTICES: Lindstrom and Turk's edge collapse, by CGAL. The rival of
+// docs/results/compression.md is this followed by Draco.
 
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>

@@ -62,7 +62,7 @@ TEST_P(StreamTest, CutAnywhereIsAnError) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Coders, StreamTest, testing::Values("baseline"));
+INSTANTIATE_TEST_SUITE_P(Coders, StreamTest, testing::Values("baseline", "contexts"));
 
 TEST(Stream, BaselineErrsByTheStepAtMost) {
   const auto synthetic = test::synthetic_maps(5, 2);
