@@ -110,7 +110,7 @@ ElevationCoder contexts_coder() {
   return {2,
           "contexts",
           "13/7 wavelet on rectangles with its finest band left out, mixed contexts",
-          false,
+          true,
           [](const ElevationMaps& maps) -> std::unique_ptr<ElevationWriter> {
             return std::make_unique<ContextsWriter>(maps);
           },

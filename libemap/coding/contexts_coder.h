@@ -1,7 +1,7 @@
 #pragma once
 
-// Masks at half the maps' resolution, an interpolating 13/7 wavelet on the whole rectangle whose finest band is never
-// coded, coefficients that the writer fits to the samples inside the mask, and context mixing.
+// An interpolating 13/7 wavelet on the whole rectangle whose finest band is never coded, coefficients that the writer
+// fits to the samples inside the mask, and context mixing.
 
 #include "libemap/coding/elevation_coder.h"
 

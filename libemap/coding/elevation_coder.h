@@ -28,10 +28,9 @@ struct ElevationCoder {
   std::uint8_t number;
   std::string name;
   std::string summary;
-  bool half_resolution_masks;  // the stream's masks are coarse ones (coding/mask_refinement.h)
+  bool leaves_finest_band_out;  // then maps may be finer for the same bits
 
-  // The maps, which must outlive the writer, have the masks that the reader will have; where such a mask reaches beyond
-  // what is known of the surface, the elevation is not a number.
+  // The maps must outlive the writer.
   std::unique_ptr<ElevationWriter> (*writer)(const ElevationMaps& maps);
 
   // maps: with planes, sizes and masks; fills in elevations. step: as written, rounded as the header does.

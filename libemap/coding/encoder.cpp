@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "libemap/coding/stream.h"
 #include "libthin/foundation/parallel.h"
@@ -69,13 +70,13 @@ class Search {
     return std::clamp(static_cast<std::uint32_t>(std::lround(samples * ratio)), kFewestSamples, kMostSamples);
   }
 
-  // A bit for each sample of a rate's masks is about right; for a quality, interpolation errs by the square of the
-  // spacing.
+  // A bit or two for each sample of the maps are about right for a rate; for a quality, interpolation errs by a power
+  // of the spacing.
   std::uint32_t first_guess() const {
-    const double per_coarse_sample = options_.coder->half_resolution_masks ? 2 : 1;
-    if (options_.psnr_db) return scaled(1, per_coarse_sample * 350 * std::pow(10.0, (*options_.psnr_db - 80) / 50));
     constexpr double kAreaOfDiagonalSquared = 0.8;  // of usual models
-    return scaled(1, per_coarse_sample * std::sqrt(8 * most_bytes_ / kAreaOfDiagonalSquared));
+    const double finer = (options_.coder->leaves_finest_band_out ? 1 : 0.8) * (surface_.is_points() ? 1.3 : 1);
+    if (options_.psnr_db) return scaled(1, finer * 520 * std::pow(10.0, (*options_.psnr_db - 80) / 45));
+    return scaled(1, finer * 1.25 * std::sqrt(8 * most_bytes_ / kAreaOfDiagonalSquared));
   }
 
   bool is_better(const Trial& a, const Trial& b) const {
@@ -131,20 +132,30 @@ class Search {
     maps.patches.resize(kept);
   }
 
-  // The largest stream that fits, or nearly: sizes go about with a power of the step.
+  // The largest stream that fits, or nearly: false position between the logarithms of steps and sizes.
   Trial to_rate(Resolution& resolution) {
+    struct Side {
+      double log_step, log_ratio;
+    };
+    std::optional<Side> fits, exceeds;
     Trial best;
-    double step = last_step_ > 0 ? last_step_ : diagonal_ * 7e-4;
-    for (int round = 0; round < 8; ++round) {
-      std::vector<std::uint8_t> stream = resolution.writer.write(step);
+    double log_step = std::log(last_step_ > 0 ? last_step_ : diagonal_ * 7e-4);
+    for (int round = 0; round < 9; ++round) {
+      std::vector<std::uint8_t> stream = resolution.writer.write(std::exp(log_step));
       const double ratio = static_cast<double>(stream.size()) / most_bytes_;
+      (ratio <= 1 ? fits : exceeds) = Side{log_step, std::log(ratio)};
       if (ratio <= 1 && stream.size() > best.stream.size()) {
         best.stream = std::move(stream);
-        best.step = step;
+        best.step = std::exp(log_step);
         best.meets_target = true;
       }
-      if ((ratio <= 1 && ratio >= kClose) || (round >= 4 && best.meets_target)) break;
-      step *= std::clamp(std::pow(ratio * 1.004, 1.3), 0.2, 8.0);
+      if ((ratio <= 1 && ratio >= kClose) || (round >= 5 && best.meets_target)) break;
+      const double wanted = std::log(kClose) / 2;
+      if (fits && exceeds)
+        log_step = fits->log_step + (exceeds->log_step - fits->log_step) * (wanted - fits->log_ratio) /
+                                        (exceeds->log_ratio - fits->log_ratio);
+      else
+        log_step += std::clamp(1.3 * (std::log(ratio) - wanted), -1.6, 2.0);
     }
     if (best.meets_target) best.error = error_of(best.stream);
     return best;

@@ -11,7 +11,6 @@
 #include <optional>
 
 #include "libemap/coding/mask_coding.h"
-#include "libemap/coding/mask_refinement.h"
 
 namespace emap {
 namespace {
@@ -142,32 +141,12 @@ Result<HeaderAndSize> parse_header(std::span<const std::uint8_t> bytes) {
   return HeaderAndSize{header, kMagic.size() + reader.position()};
 }
 
-// Gives the map the mask that the refinement of its coarse mask is, and the size; returns the coarse mask.
-std::vector<std::uint8_t> halve_mask(ElevationPatch& patch) {
-  const std::vector<std::uint8_t> coarse = coarse_mask(patch.columns, patch.rows, patch.mask);
-  ElevationPatch fine;
-  fine.plane = patch.plane;
-  fine.columns = doubled(halved(patch.columns));
-  fine.rows = doubled(halved(patch.rows));
-  fine.mask = refined_mask(halved(patch.columns), halved(patch.rows), coarse);
-  fine.elevation.resize(fine.mask.size());
-  for (std::uint32_t r = 0; r < fine.rows; ++r)
-    for (std::uint32_t c = 0; c < fine.columns; ++c) {
-      const std::size_t from = std::size_t{r} * patch.columns + c, to = std::size_t{r} * fine.columns + c;
-      if (fine.mask[to])
-        fine.elevation[to] = patch.mask[from] ? patch.elevation[from] : std::numeric_limits<double>::quiet_NaN();
-    }
-  patch = std::move(fine);
-  return coarse;
-}
-
 Error cut_within(const char* part) {
   return {ErrorKind::incomplete, fmt::format("the stream ends within the {}: it was cut or is damaged", part)};
 }
 
 // Planes and the sizes of maps, with all limits checked before anything is allocated by them.
-Result<std::vector<CodedPlane>> read_planes(RangeDecoder& decoder, const StreamHeader& header, bool half_resolution,
-                                            std::size_t bytes) {
+Result<std::vector<CodedPlane>> read_planes(RangeDecoder& decoder, const StreamHeader& header, std::size_t bytes) {
   if (std::uint64_t{header.patch_count} * plane_bits(header.frame) > 8 * (std::uint64_t{bytes} + 8) ||
       header.patch_count > kMostPatches)
     return Error{ErrorKind::input,
@@ -176,7 +155,7 @@ Result<std::vector<CodedPlane>> read_planes(RangeDecoder& decoder, const StreamH
   std::uint64_t spanned = 0;
   for (CodedPlane& plane : planes) {
     code_plane(decoder, plane, header.frame);
-    spanned += std::uint64_t{plane.columns} * plane.rows * (half_resolution ? 4 : 1);
+    spanned += std::uint64_t{plane.columns} * plane.rows;
   }
   if (decoder.exhausted()) return cut_within("planes");
   if (spanned > most_samples_spanned(bytes))
@@ -186,8 +165,8 @@ Result<std::vector<CodedPlane>> read_planes(RangeDecoder& decoder, const StreamH
   return planes;
 }
 
-std::optional<Error> read_masks(RangeDecoder& decoder, const std::vector<CodedPlane>& planes, bool half_resolution,
-                                const StreamFrame& frame, ElevationMaps& maps) {
+std::optional<Error> read_masks(RangeDecoder& decoder, const std::vector<CodedPlane>& planes, const StreamFrame& frame,
+                                ElevationMaps& maps) {
   MaskCoding coding;
   for (const CodedPlane& plane : planes) {
     ElevationPatch patch;
@@ -197,11 +176,6 @@ std::optional<Error> read_masks(RangeDecoder& decoder, const std::vector<CodedPl
     patch.mask.resize(std::size_t{plane.columns} * plane.rows);
     coding.code(decoder, patch.columns, patch.rows, patch.mask);
     if (decoder.exhausted()) return cut_within("masks");
-    if (half_resolution) {
-      patch.mask = refined_mask(plane.columns, plane.rows, patch.mask);
-      patch.columns = doubled(plane.columns);
-      patch.rows = doubled(plane.rows);
-    }
     maps.patches.push_back(std::move(patch));
   }
   return std::nullopt;
@@ -241,10 +215,8 @@ StreamWriter::StreamWriter(const ElevationCoder& coder, const StreamFrame& frame
   header_.frame = frame;
   header_.patch_count = static_cast<std::uint32_t>(planes_.size());
   for (std::size_t i = 0; i < planes_.size(); ++i) {
-    ElevationPatch& patch = maps_.patches[i];
-    masks_.push_back(coder.half_resolution_masks ? halve_mask(patch) : patch.mask);
-    planes_[i].columns = coder.half_resolution_masks ? halved(patch.columns) : patch.columns;
-    planes_[i].rows = coder.half_resolution_masks ? halved(patch.rows) : patch.rows;
+    planes_[i].columns = maps_.patches[i].columns;
+    planes_[i].rows = maps_.patches[i].rows;
   }
   elevations_ = coder.writer(maps_);
 }
@@ -256,9 +228,9 @@ std::vector<std::uint8_t> StreamWriter::write(double step) {
   MaskCoding masks;
   std::uint64_t spanned = 0;
   for (std::size_t i = 0; i < planes_.size(); ++i) {
-    std::vector<std::uint8_t> mask = masks_[i];
+    std::vector<std::uint8_t> mask = maps_.patches[i].mask;
     masks.code(encoder, planes_[i].columns, planes_[i].rows, mask);
-    spanned += maps_.patches[i].mask.size();
+    spanned += mask.size();
   }
   elevations_->write(header_.step(), encoder);
 
@@ -302,13 +274,11 @@ Result<DecodedStream> read_stream(std::span<const std::uint8_t> bytes) {
   decoded.maps.diagonal = header.frame.box.diagonal();
   decoded.maps.box_minimum = header.frame.box.minimum;
   RangeDecoder decoder(bytes.subspan(parsed->bytes));
-  const Result<std::vector<CodedPlane>> planes =
-      read_planes(decoder, header, coder->half_resolution_masks, bytes.size());
+  const Result<std::vector<CodedPlane>> planes = read_planes(decoder, header, bytes.size());
   if (!planes) return planes.error();
   decoded.parts.header = parsed->bytes;
   decoded.parts.planes = decoder.bytes_read();
-  if (const auto error = read_masks(decoder, *planes, coder->half_resolution_masks, header.frame, decoded.maps))
-    return *error;
+  if (const auto error = read_masks(decoder, *planes, header.frame, decoded.maps)) return *error;
   decoded.parts.masks = decoder.bytes_read() - decoded.parts.planes;
   if (const Result<void> read = coder->read(decoder, header.step(), decoded.maps); !read) return read.error();
   decoded.parts.elevations = bytes.size() - decoded.parts.header - decoded.parts.planes - decoded.parts.masks;

@@ -61,8 +61,7 @@ class StreamWriter {
   const ElevationCoder& coder_;
   StreamHeader header_;
   std::vector<CodedPlane> planes_;
-  ElevationMaps maps_;                            // with the masks that the reader will have
-  std::vector<std::vector<std::uint8_t>> masks_;  // as they are written
+  ElevationMaps maps_;
   std::unique_ptr<ElevationWriter> elevations_;
 };
 

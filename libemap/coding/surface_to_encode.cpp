@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "libemap/elevation/base_plane.h"
@@ -22,17 +23,31 @@ using thin::Result;
 using Made = std::unique_ptr<SurfaceToEncode>;
 
 constexpr std::size_t kSamples = 60000;
-constexpr double kPointSpacings = 0.6;  // of the dense mesh that stands for a point set's MLS surface
+constexpr std::size_t kPointSamples = 20000;  // projections onto MLS surfaces cost more
+constexpr double kPointSpacings = 0.6;        // of the dense mesh that stands for a point set's MLS surface
 
-double root_mean_square_distance(const std::vector<Vector3d>& points, const TriangleTree& tree) {
+// About `count` of the points, evenly through their order.
+std::vector<Vector3d> every(const std::vector<Vector3d>& points, std::size_t count) {
+  const std::size_t stride = std::max<std::size_t>(1, points.size() / count);
+  std::vector<Vector3d> chosen;
+  for (std::size_t i = 0; i < points.size(); i += stride) chosen.push_back(points[i]);
+  return chosen;
+}
+
+double root_mean_square(const std::vector<Vector3d>& points,
+                        const std::function<double(const Vector3d&)>& distance_squared) {
   if (points.empty()) return std::numeric_limits<double>::infinity();
   std::vector<double> squared(points.size());
   thin::parallel_ranges(points.size(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) squared[i] = tree.closest(points[i]).distance_squared;
+    for (std::size_t i = begin; i < end; ++i) squared[i] = distance_squared(points[i]);
   });
   double sum = 0;
   for (const double value : squared) sum += value;
   return std::sqrt(sum / static_cast<double>(points.size()));
+}
+
+double root_mean_square_distance(const std::vector<Vector3d>& points, const TriangleTree& tree) {
+  return root_mean_square(points, [&](const Vector3d& p) { return tree.closest(p).distance_squared; });
 }
 
 // A partitioned mesh, and the surface that decoded ones are measured against.
@@ -72,13 +87,26 @@ class PartitionedMesh : public SurfaceToEncode {
   }
 
   double error_of(const ElevationMaps& decoded) const override {
-    const Mesh mesh = closed_mesh(decoded).mesh;
-    if (mesh.triangles.empty()) return std::numeric_limits<double>::infinity();
-    const double missing = root_mean_square_distance(samples_, TriangleTree(mesh));
-    return std::max(missing, root_mean_square_distance(sample_surface(mesh, kSamples, 2), tree_));
+    return content_.is_points ? error_of_points(sample_points(decoded)) : error_of_mesh(closed_mesh(decoded).mesh);
   }
 
  private:
+  double error_of_mesh(const Mesh& decoded) const {
+    if (decoded.triangles.empty()) return std::numeric_limits<double>::infinity();
+    const double missing = root_mean_square_distance(samples_, TriangleTree(decoded));
+    return std::max(missing, root_mean_square_distance(sample_surface(decoded, kSamples, 2), tree_));
+  }
+
+  // Decoded points are compared as the MLS surface that they stand for.
+  double error_of_points(const PointSet& decoded) const {
+    if (decoded.positions.size() < 3) return std::numeric_limits<double>::infinity();
+    const MlsSurface surface(decoded.positions);
+    const std::vector<Vector3d> samples = every(samples_, kPointSamples);
+    const double missing =
+        root_mean_square(samples, [&](const Vector3d& p) { return (surface.closest(p).position - p).squaredNorm(); });
+    return std::max(missing, root_mean_square_distance(every(decoded.positions, kSamples), tree_));
+  }
+
   Content content_;
   std::vector<std::vector<std::uint32_t>> elements_;
   TriangleTree tree_;
