@@ -189,7 +189,7 @@ def picture_of_partition(name, coloured):
     colours = triangles["c"][towards] / 255 * (0.45 + 0.55 * light[:, None])
     figure = plt.figure(figsize=(6, 6), dpi=100)
     axes = figure.add_axes([0, 0, 1, 1])
-    axes.scatter(centres[order, 0], centres[order, 1], s=max(0.15, 60000 / faces), c=colours[order], linewidths=0)
+    axes.scatter(centres[order, 0], centres[order, 1], s=max(0.6, 300000 / faces), c=colours[order], linewidths=0)
     axes.set_aspect("equal")
     axes.axis("off")
     target = PICTURES / f"partition-{name}.png"
