@@ -158,6 +158,7 @@ class Search {
         log_step += std::clamp(1.3 * (std::log(ratio) - wanted), -1.6, 2.0);
     }
     if (best.meets_target) best.error = error_of(best.stream);
+    best.meets_target = std::isfinite(best.error);
     return best;
   }
 
@@ -197,6 +198,11 @@ class Search {
   double psnr_db(double error) const { return 20 * std::log10(diagonal_ / error); }
 
   Result<Encoded> finished(Trial trial) const {
+    if (!trial.stream.empty() && !std::isfinite(trial.error))
+      return Error{ErrorKind::input,
+                   fmt::format("nothing of the surface lies at the samples of {} to the diagonal; ask "
+                               "for more with --resolution",
+                               trial.samples_per_diagonal)};
     if (!trial.meets_target && options_.bits_per_point)
       return Error{ErrorKind::configuration,
                    fmt::format("{} bits per point, {:.0f} bytes, are fewer than planes and masks of {} patches take; "

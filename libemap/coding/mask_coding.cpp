@@ -88,6 +88,7 @@ MaskCoding::MaskCoding() : block_is_mixed_(81), block_is_full_(81), sample_(kSam
 template <class Coder>
 void MaskCoding::code(Coder& coder, std::uint32_t columns, std::uint32_t rows, std::vector<std::uint8_t>& mask) {
   assert(mask.size() == std::size_t{columns} * rows);
+  if (mask.empty()) return;
   Blocks blocks(columns, rows);
   KnownSamples known(columns, rows);
 

@@ -22,7 +22,6 @@ using Eigen::Vector3d;
 using thin::Result;
 using Made = std::unique_ptr<SurfaceToEncode>;
 
-constexpr std::size_t kSamples = 60000;
 constexpr std::size_t kPointSamples = 20000;  // projections onto MLS surfaces cost more
 constexpr double kPointSpacings = 0.6;        // of the dense mesh that stands for a point set's MLS surface
 
@@ -62,11 +61,11 @@ class PartitionedMesh : public SurfaceToEncode {
     std::size_t point_count = 0;
   };
 
-  PartitionedMesh(Content content, const Mesh& measured)
+  PartitionedMesh(Content content, const Mesh& measured, std::size_t samples)
       : content_(std::move(content)),
         elements_(content_.partition.elements_of_patches()),
         tree_(measured),
-        samples_(sample_surface(measured, kSamples, 1)) {}
+        samples_(sample_surface(measured, samples, 1)) {}
 
   bool is_points() const override { return content_.is_points; }
   std::size_t point_count() const override { return content_.point_count; }
@@ -94,7 +93,7 @@ class PartitionedMesh : public SurfaceToEncode {
   double error_of_mesh(const Mesh& decoded) const {
     if (decoded.triangles.empty()) return std::numeric_limits<double>::infinity();
     const double missing = root_mean_square_distance(samples_, TriangleTree(decoded));
-    return std::max(missing, root_mean_square_distance(sample_surface(decoded, kSamples, 2), tree_));
+    return std::max(missing, root_mean_square_distance(sample_surface(decoded, samples_.size(), 2), tree_));
   }
 
   // Decoded points are compared as the MLS surface that they stand for.
@@ -104,7 +103,7 @@ class PartitionedMesh : public SurfaceToEncode {
     const std::vector<Vector3d> samples = every(samples_, kPointSamples);
     const double missing =
         root_mean_square(samples, [&](const Vector3d& p) { return (surface.closest(p).position - p).squaredNorm(); });
-    return std::max(missing, root_mean_square_distance(every(decoded.positions, kSamples), tree_));
+    return std::max(missing, root_mean_square_distance(every(decoded.positions, samples_.size()), tree_));
   }
 
   Content content_;
@@ -115,7 +114,8 @@ class PartitionedMesh : public SurfaceToEncode {
 
 }  // namespace
 
-Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(Mesh mesh, const PartitionOptions& options) {
+Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(Mesh mesh, const PartitionOptions& options,
+                                                        std::size_t samples) {
   Result<Partition> partition = partition_mesh(mesh, options);
   if (!partition) return partition.error();
   std::vector<BasePlane> planes = base_planes(mesh, *partition);
@@ -123,11 +123,12 @@ Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(Mesh mesh, const Partiti
   const std::size_t count = mesh.positions.size();
   const Mesh measured = mesh;
   return Made(std::make_unique<PartitionedMesh>(
-      PartitionedMesh::Content{std::move(mesh), std::move(*partition), std::move(planes), box, false, count},
-      measured));
+      PartitionedMesh::Content{std::move(mesh), std::move(*partition), std::move(planes), box, false, count}, measured,
+      samples));
 }
 
-Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const PartitionOptions& options) {
+Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const PartitionOptions& options,
+                                                          std::size_t samples) {
   if (points.positions.size() < 3)
     return thin::Error{thin::ErrorKind::input, "fewer than three points make no surface"};
   ensure_normals(points);
@@ -151,7 +152,7 @@ Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const
   content.box = bounding_box(points.positions);
   content.is_points = true;
   content.point_count = points.positions.size();
-  return Made(std::make_unique<PartitionedMesh>(std::move(content), closed.mesh));
+  return Made(std::make_unique<PartitionedMesh>(std::move(content), closed.mesh, samples));
 }
 
 }  // namespace emap

@@ -29,14 +29,18 @@ class SurfaceToEncode {
 
   virtual ElevationMaps resample(std::span<const BasePlane> planes, double spacing) const = 0;
 
-  // E_rms of equation 3.2 between this surface and the decoded one, by fewer samples than a final measurement takes;
+  // E_rms of equation 3.2 between this surface and the decoded one, by samples of both;
   // infinite where nothing was decoded.
   virtual double error_of(const ElevationMaps& decoded) const = 0;
 };
 
-// Errors: as partition_mesh() and partition_points(). Points get normals where they have none; what is sampled and
-// measured of them is a dense mesh of their MLS surface.
-thin::Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(Mesh mesh, const PartitionOptions& options);
-thin::Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const PartitionOptions& options);
+constexpr std::size_t kSteeringSamples = 200000;
+
+// samples: on each surface, for error_of(). Errors: as partition_mesh() and partition_points(). Points get normals
+// where they have none; what is sampled and measured of them is a dense mesh of their MLS surface.
+thin::Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(Mesh mesh, const PartitionOptions& options,
+                                                              std::size_t samples = kSteeringSamples);
+thin::Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const PartitionOptions& options,
+                                                                std::size_t samples = kSteeringSamples);
 
 }  // namespace emap

@@ -13,6 +13,8 @@
 namespace emap {
 namespace {
 
+constexpr std::size_t kSamples = 20000;
+
 // A sphere with waves.
 Mesh test_mesh() {
   constexpr std::uint32_t kColumns = 96, kRows = 48;
@@ -53,7 +55,7 @@ class EncoderTest : public testing::TestWithParam<std::string> {
 
 TEST_P(EncoderTest, KeepsToTheRate) {
   const Mesh mesh = test_mesh();
-  const auto surface = mesh_to_encode(mesh, {});
+  const auto surface = mesh_to_encode(mesh, {}, kSamples);
   ASSERT_TRUE(surface.ok());
   double last_psnr = 0;
   for (const double rate : {3.0, 12.0}) {
@@ -72,7 +74,7 @@ TEST_P(EncoderTest, KeepsToTheRate) {
 
 TEST_P(EncoderTest, KeepsToTheQuality) {
   const Mesh mesh = test_mesh();
-  const auto surface = mesh_to_encode(mesh, {});
+  const auto surface = mesh_to_encode(mesh, {}, kSamples);
   EncoderOptions wanted = options();
   wanted.psnr_db = 70;
   const auto encoded = encode_surface(**surface, wanted);
@@ -89,7 +91,7 @@ TEST_P(EncoderTest, TheSameBytesForAnyNumberOfThreads) {
   std::vector<std::vector<std::uint8_t>> streams;
   for (const int threads : {1, 2}) {
     const thin::ThreadLimit limit(threads);
-    const auto surface = mesh_to_encode(mesh, {});
+    const auto surface = mesh_to_encode(mesh, {}, kSamples);
     streams.push_back(encode_surface(**surface, wanted)->stream);
   }
   EXPECT_EQ(streams[0], streams[1]);
@@ -99,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(Coders, EncoderTest, testing::Values("baseline", "conte
 
 TEST(Encoder, SaysWhatCannotBe) {
   const Mesh mesh = test_mesh();
-  const auto surface = mesh_to_encode(mesh, {});
+  const auto surface = mesh_to_encode(mesh, {}, kSamples);
   EncoderOptions options;
   EXPECT_NE(encode_surface(**surface, options).error().message.find("bits per point"), std::string::npos);
   options.bits_per_point = 0.01;
@@ -114,7 +116,7 @@ TEST(Encoder, PointsOfASphereGoThereAndBack) {
     const double z = 1 - (2 * i + 1) / 4000.0, azimuth = 2.399963229728653 * i, r = std::sqrt(1 - z * z);
     points.positions.emplace_back(r * std::cos(azimuth), r * std::sin(azimuth), z);
   }
-  const auto surface = points_to_encode(points, {});
+  const auto surface = points_to_encode(points, {}, kSamples);
   ASSERT_TRUE(surface.ok()) << surface.error().message;
   EncoderOptions options;
   options.bits_per_point = 2;
@@ -123,12 +125,12 @@ TEST(Encoder, PointsOfASphereGoThereAndBack) {
   const auto decoded = read_stream(encoded->stream);
   ASSERT_TRUE(decoded.ok());
   EXPECT_TRUE(decoded->header.from_points);
-  for (const Eigen::Vector3d& p : sample_points(decoded->maps).positions) EXPECT_NEAR(p.norm(), 1, 0.02);
+  for (const Eigen::Vector3d& p : sample_points(decoded->maps).positions) EXPECT_NEAR(p.norm(), 1, 0.04);
 }
 
 TEST(Encoder, DegenerateInputIsAnErrorOrAResult) {
   const auto try_to_encode = [](Mesh mesh) {
-    const auto surface = mesh_to_encode(std::move(mesh), {});
+    const auto surface = mesh_to_encode(std::move(mesh), {}, kSamples);
     if (!surface) {
       EXPECT_FALSE(surface.error().message.empty());
       return;
