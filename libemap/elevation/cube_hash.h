@@ -2,7 +2,7 @@
 
 // Items by the cubes of a regular grid in space that they touch; cubes are made as they are needed.
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdint>
 #include <limits>

@@ -2,7 +2,7 @@
 
 // A surface as elevation maps: one regular grid of elevations over each patch's base plane (thesis, 3.3.1, 3.3.3).
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
 

@@ -3,7 +3,7 @@
 // What the partitioning methods see of a surface: elements (triangles, points, or small groups of them) with a place, a
 // normal and an area, and which of them touch along how long a boundary. Meshes and point sets look alike here.
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -13,6 +13,8 @@ namespace emap {
 namespace {
 
 constexpr std::size_t kScrapElements = 48;  // leftovers of so many elements may join a patch whatever their normals
+constexpr double kScrapShare = 3e-4;        // and of so much of the area
+constexpr double kScrapLeniency = 5;        // times the height tolerance
 constexpr std::uint32_t kBlocked = kNoPatch - 1;
 
 class Finishing {
@@ -89,13 +91,14 @@ class Finishing {
 
   void absorb_scraps() {
     std::vector<std::uint32_t> fixed(graph_.size(), kBlocked);
+    const double area = graph_.total_area();
     bool any = false;
     for (const Component& leftover : components_of(graph_, patch_of_, kNoPatch)) {
-      if (leftover.elements.size() > kScrapElements) continue;
+      if (leftover.elements.size() > kScrapElements || leftover.area > kScrapShare * area) continue;
       any = true;
       for (const std::uint32_t element : leftover.elements) fixed[element] = kNoPatch;
     }
-    if (any) flood(graph_, {.aperture_cosine = -1, .fixed = fixed}, sheets_, patch_of_);
+    if (any) flood(graph_, {.aperture_cosine = -1, .fixed = fixed, .leniency = kScrapLeniency}, sheets_, patch_of_);
   }
 
   // Scraps join the patch along which they lie longest, least damage first, until all may add no more.

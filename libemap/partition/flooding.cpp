@@ -26,7 +26,7 @@ class Flood {
     while (!queue_.empty()) {
       const double cost = queue_.top_key();
       const std::uint32_t element = queue_.pop();
-      if (sheets_.try_add(element, candidate_[element])) {
+      if (sheets_.try_add(element, candidate_[element], rules_.leniency)) {
         patch_of_[element] = candidate_[element];
         offer_to_neighbours(element);
       } else {

@@ -18,6 +18,7 @@ struct FloodingRules {
   // Elements that, where they are taken at all, must go to a patch, and before all others; kNoPatch for those free to
   // choose. Empty: all are free.
   std::span<const std::uint32_t> fixed = {};
+  double leniency = 1;  // of the sheet map
 };
 
 // Cosine of the widest angle between the element's normals and the direction; 1 where it has none.

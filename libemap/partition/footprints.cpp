@@ -29,6 +29,19 @@ PlaneAxes axes_around(const Eigen::Vector3d& normal) {
   return {u, normal.cross(u), normal};
 }
 
+Cell Footprints::centre_cell(std::uint32_t element, const PlaneAxes& axes, const Slopes& slopes) const {
+  const Eigen::Vector3d offset = centre_of(element) - origin_;
+  const double u = axes.u.dot(offset) / cell_size_, v = axes.v.dot(offset) / cell_size_;
+  const double rise = slopes.u * (std::floor(u) + 0.5 - u) + slopes.v * (std::floor(v) + 0.5 - v);
+  return {static_cast<std::int32_t>(std::floor(u)), static_cast<std::int32_t>(std::floor(v)),
+          static_cast<float>(axes.normal.dot(offset) + cell_size_ * rise)};
+}
+
+Eigen::Vector3d TriangleFootprints::centre_of(std::uint32_t element) const {
+  const auto& [a, b, c] = mesh_.triangles[element];
+  return (mesh_.positions[a] + mesh_.positions[b] + mesh_.positions[c]) / 3;
+}
+
 std::optional<Slopes> TriangleFootprints::append_cells(std::uint32_t element, const PlaneAxes& axes,
                                                        std::vector<Cell>& cells) const {
   std::array<Eigen::Vector3d, 3> corners;  // in cells, cell centres at whole numbers

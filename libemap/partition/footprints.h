@@ -2,7 +2,7 @@
 
 // Where an element lies over a plane: the cells of a square raster whose centre lines it meets, and at which height.
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -38,13 +38,21 @@ class Footprints {
   virtual std::optional<Slopes> append_cells(std::uint32_t element, const PlaneAxes& axes,
                                              std::vector<Cell>& cells) const = 0;
 
+  // The cell in which the element's centre lies, with the height of the element's plane over the cell's centre: for
+  // elements that meet no centre line.
+  Cell centre_cell(std::uint32_t element, const PlaneAxes& axes, const Slopes& slopes) const;
+
   double cell_size() const { return cell_size_; }
   // Heights of one sheet may differ by this within a cell.
   double height_tolerance() const { return height_tolerance_; }
 
  protected:
-  Footprints(double cell_size, double height_tolerance) : cell_size_(cell_size), height_tolerance_(height_tolerance) {}
+  Footprints(const Eigen::Vector3d& origin, double cell_size, double height_tolerance)
+      : origin_(origin), cell_size_(cell_size), height_tolerance_(height_tolerance) {}
 
+  virtual Eigen::Vector3d centre_of(std::uint32_t element) const = 0;
+
+  Eigen::Vector3d origin_;
   double cell_size_, height_tolerance_;
 };
 
@@ -53,13 +61,14 @@ class TriangleFootprints : public Footprints {
  public:
   // The mesh must outlive the footprints.
   TriangleFootprints(const Mesh& mesh, const Eigen::Vector3d& origin, double cell_size, double height_tolerance)
-      : Footprints(cell_size, height_tolerance), mesh_(mesh), origin_(origin) {}
+      : Footprints(origin, cell_size, height_tolerance), mesh_(mesh) {}
   std::optional<Slopes> append_cells(std::uint32_t element, const PlaneAxes& axes,
                                      std::vector<Cell>& cells) const override;
 
  private:
+  Eigen::Vector3d centre_of(std::uint32_t element) const override;
+
   const Mesh& mesh_;
-  Eigen::Vector3d origin_;
 };
 
 // Discs of the elements' areas around their centres: for points, and for groups of triangles.
@@ -67,13 +76,14 @@ class DiscFootprints : public Footprints {
  public:
   // The graph must outlive the footprints.
   DiscFootprints(const ElementGraph& graph, const Eigen::Vector3d& origin, double cell_size, double height_tolerance)
-      : Footprints(cell_size, height_tolerance), graph_(graph), origin_(origin) {}
+      : Footprints(origin, cell_size, height_tolerance), graph_(graph) {}
   std::optional<Slopes> append_cells(std::uint32_t element, const PlaneAxes& axes,
                                      std::vector<Cell>& cells) const override;
 
  private:
+  Eigen::Vector3d centre_of(std::uint32_t element) const override { return graph_.centres[element]; }
+
   const ElementGraph& graph_;
-  Eigen::Vector3d origin_;
 };
 
 }  // namespace emap

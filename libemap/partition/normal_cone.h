@@ -2,7 +2,7 @@
 
 // The narrowest cone of directions around given unit normals, by their smallest enclosing ball (thesis, 3.3.1).
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <vector>
 
 namespace emap {

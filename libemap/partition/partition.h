@@ -3,7 +3,7 @@
 // A surface cut into patches, each of which is a height field over a plane (thesis, 3.3.2). The elements that are
 // shared out are the triangles of a mesh or the points of a point set.
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -26,35 +26,43 @@ std::uint32_t SheetMap::add_patch(const Eigen::Vector3d& normal) {
   return static_cast<std::uint32_t>(axes_.size() - 1);
 }
 
-bool SheetMap::try_add(std::uint32_t element, std::uint32_t patch) {
+bool SheetMap::try_add(std::uint32_t element, std::uint32_t patch, double leniency) {
   cells_.clear();
   places_.clear();
   const std::optional<Slopes> slopes = footprints_.append_cells(element, axes_[patch], cells_);
-  const double tolerance = footprints_.height_tolerance();
+  const double tolerance = leniency * footprints_.height_tolerance();
+  const bool looks_around = leniency <= 1 && std::isfinite(tolerance);
   for (const Cell& cell : cells_) {
     places_.push_back(&place_at(patch, cell.u, cell.v));
     if (std::abs(places_.back()->height - cell.height) > tolerance)
       return false;  // not so where there is no height yet
-    if (slopes && std::isfinite(tolerance) && !leads_to_neighbours(cell, *slopes, patch)) return false;
+    if (slopes && looks_around && !leads_to_neighbours(cell, *slopes, patch)) return false;
+  }
+  if (cells_.empty() && slopes && looks_around) {
+    const Cell centre = footprints_.centre_cell(element, axes_[patch], *slopes);
+    return leads_to(0, 0, centre, *slopes, patch) && leads_to_neighbours(centre, *slopes, patch);
   }
   for (std::size_t i = 0; i < cells_.size(); ++i)
     if (std::isnan(places_[i]->height)) *places_[i] = {cells_[i].height, slopes.value_or(Slopes{})};
   return true;
 }
 
-bool SheetMap::leads_to_neighbours(const Cell& cell, const Slopes& slopes, std::uint32_t patch) {
+// Whether what lies so many cells away, if anything, is at a height to which the element's slopes or its own lead.
+bool SheetMap::leads_to(std::int32_t du, std::int32_t dv, const Cell& cell, const Slopes& slopes, std::uint32_t patch) {
+  const Place& other = place_at(patch, cell.u + du, cell.v + dv);
+  if (std::isnan(other.height)) return true;
   const auto step = static_cast<float>(footprints_.cell_size());
   const auto slack = static_cast<float>(footprints_.height_tolerance()) +
                      step * (1 + kSlopeSlack * std::max(std::abs(slopes.u), std::abs(slopes.v)));
-  const auto leads = [&](std::int32_t du, std::int32_t dv) {
-    const Place& other = place_at(patch, cell.u + du, cell.v + dv);
-    if (std::isnan(other.height)) return true;
-    const float own = step * (slopes.u * static_cast<float>(du) + slopes.v * static_cast<float>(dv));
-    const float others = step * (other.slopes.u * static_cast<float>(du) + other.slopes.v * static_cast<float>(dv));
-    const float rise = other.height - cell.height;
-    return rise >= std::min(own, others) - slack && rise <= std::max(own, others) + slack;
-  };
-  return leads(1, 0) && leads(-1, 0) && leads(0, 1) && leads(0, -1);
+  const float own = step * (slopes.u * static_cast<float>(du) + slopes.v * static_cast<float>(dv));
+  const float others = step * (other.slopes.u * static_cast<float>(du) + other.slopes.v * static_cast<float>(dv));
+  const float rise = other.height - cell.height;
+  return rise >= std::min(own, others) - slack && rise <= std::max(own, others) + slack;
+}
+
+bool SheetMap::leads_to_neighbours(const Cell& cell, const Slopes& slopes, std::uint32_t patch) {
+  return leads_to(1, 0, cell, slopes, patch) && leads_to(-1, 0, cell, slopes, patch) &&
+         leads_to(0, 1, cell, slopes, patch) && leads_to(0, -1, cell, slopes, patch);
 }
 
 SheetMap::Place& SheetMap::place_at(std::uint32_t patch, std::int32_t u, std::int32_t v) {

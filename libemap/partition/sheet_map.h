@@ -25,7 +25,8 @@ class SheetMap {
   // Takes the element into the patch, unless it lies over or under what is there by more than the height tolerance
   // anywhere, or next to something at a height to which neither its slope nor that of the other leads: there another
   // part of the patch passes behind its rim. Returns whether it did.
-  bool try_add(std::uint32_t element, std::uint32_t patch);
+  // leniency: above 1, so many times the height tolerance, and no look at the neighbours.
+  bool try_add(std::uint32_t element, std::uint32_t patch, double leniency = 1);
 
  private:
   static constexpr std::int32_t kTileSize = 16;
@@ -37,6 +38,7 @@ class SheetMap {
 
   // The tile is made where it is missing.
   Place& place_at(std::uint32_t patch, std::int32_t u, std::int32_t v);
+  bool leads_to(std::int32_t du, std::int32_t dv, const Cell& cell, const Slopes& slopes, std::uint32_t patch);
   bool leads_to_neighbours(const Cell& cell, const Slopes& slopes, std::uint32_t patch);
   std::uint32_t tile_at(std::uint32_t patch, std::int32_t tile_u, std::int32_t tile_v);
   void grow_table();

@@ -2,7 +2,7 @@
 
 // The points of the integer grid under a triangle, with the triangle's height over each: exact, edges included.
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
