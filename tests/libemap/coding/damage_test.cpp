@@ -40,7 +40,9 @@ void expect_sound(const Bytes& bytes, const std::string& trace) {
   }
   EXPECT_LE(spanned, most_samples_spanned(bytes.size()));
   const PointSet points = sample_points(decoded->maps);
-  if (spanned < 20000) closed_mesh(decoded->maps);
+  // Closing the gaps of noise is slow: one in ten.
+  static std::uint32_t decoded_streams = 0;
+  if (decoded_streams++ % 10 == 0 && spanned < 20000) closed_mesh(decoded->maps);
 }
 
 class DamageTest : public testing::TestWithParam<std::string> {
