@@ -51,13 +51,11 @@ void set_means(const ElementGraph& fine, const std::vector<std::uint32_t>& group
 }
 
 void set_spreads(const ElementGraph& fine, const std::vector<std::uint32_t>& group_of, ElementGraph& coarse) {
-  std::vector<double> least_cosine(coarse.size(), 1);
-  for (std::size_t i = 0; i < fine.size(); ++i)
-    if (!fine.normals[i].isZero(0))
-      least_cosine[group_of[i]] = std::min(least_cosine[group_of[i]], fine.normals[i].dot(coarse.normals[group_of[i]]));
-  coarse.spreads.resize(coarse.size());
-  for (std::size_t group = 0; group < coarse.size(); ++group)
-    coarse.spreads[group] = std::acos(std::clamp(least_cosine[group], -1.0, 1.0));
+  coarse.spread_cosines.assign(coarse.size(), 1);
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    double& least = coarse.spread_cosines[group_of[i]];
+    if (!fine.normals[i].isZero(0)) least = std::min(least, fine.normals[i].dot(coarse.normals[group_of[i]]));
+  }
 }
 
 std::vector<AdjacentPair> adjacent_groups(const ElementGraph& fine, const std::vector<std::uint32_t>& group_of) {

@@ -23,7 +23,7 @@ struct ElementGraph {
   // no direction there: such an element fits every patch.
   std::vector<Eigen::Vector3d> normals;
   std::vector<double> areas;
-  std::vector<double> spreads;  // radians: the widest angle of the group's normals to `normals`; empty for all 0
+  std::vector<double> spread_cosines;          // of the widest angle of the group's normals to `normals`; empty: all 1
   std::vector<std::uint32_t> first_adjacency;  // size() + 1; of each element in `adjacencies`
   std::vector<Adjacency> adjacencies;          // symmetric
 

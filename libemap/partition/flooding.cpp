@@ -1,5 +1,6 @@
 #include "libemap/partition/flooding.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "libthin/foundation/indexed_priority_queue.h"
@@ -9,6 +10,21 @@ namespace {
 
 // Comes before every squared distance between unit normals.
 constexpr double kFixedFirst = -8;
+
+struct Fit {
+  double least_cosine;      // of the widest angle between the element's normals and the plane's
+  double distance_squared;  // between its mean normal and the plane's
+};
+
+Fit fit_of(const ElementGraph& graph, std::uint32_t element, const Eigen::Vector3d& normal) {
+  if (graph.normals[element].isZero(0)) return {1, 1};
+  const double cosine = graph.normals[element].dot(normal);
+  if (graph.spread_cosines.empty()) return {cosine, 2 - 2 * cosine};
+  // cos(a + b); at most a half turn.
+  const double spread = graph.spread_cosines[element];
+  const double sines = std::sqrt(std::max(0.0, (1 - cosine * cosine) * (1 - spread * spread)));
+  return {cosine <= -spread ? -1 : cosine * spread - sines, 2 - 2 * cosine};
+}
 
 class Flood {
  public:
@@ -40,9 +56,9 @@ class Flood {
   double cost(std::uint32_t element, std::uint32_t patch) const {
     const bool is_fixed = !rules_.fixed.empty() && rules_.fixed[element] != kNoPatch;
     if (is_fixed && rules_.fixed[element] != patch) return std::numeric_limits<double>::infinity();
-    const Eigen::Vector3d& normal = sheets_.normal(patch);
-    if (least_cosine(graph_, element, normal) < rules_.aperture_cosine) return std::numeric_limits<double>::infinity();
-    return (graph_.normals[element] - normal).squaredNorm() + (is_fixed ? kFixedFirst : 0);
+    const Fit fit = fit_of(graph_, element, sheets_.normal(patch));
+    if (fit.least_cosine < rules_.aperture_cosine) return std::numeric_limits<double>::infinity();
+    return fit.distance_squared + (is_fixed ? kFixedFirst : 0);
   }
 
   void offer_to_neighbours(std::uint32_t element) {
@@ -52,6 +68,7 @@ class Flood {
   }
 
   void offer(std::uint32_t element, std::uint32_t patch) {
+    if (queue_.contains(element) && candidate_[element] == patch) return;
     const double offered = cost(element, patch);
     if (!std::isfinite(offered)) return;
     if (!queue_.contains(element)) {
@@ -91,10 +108,7 @@ class Flood {
 }  // namespace
 
 double least_cosine(const ElementGraph& graph, std::uint32_t element, const Eigen::Vector3d& normal) {
-  if (graph.normals[element].isZero(0)) return 1;
-  const double cosine = graph.normals[element].dot(normal);
-  if (graph.spreads.empty() || graph.spreads[element] == 0) return cosine;
-  return std::cos(std::min(M_PI, std::acos(std::clamp(cosine, -1.0, 1.0)) + graph.spreads[element]));
+  return fit_of(graph, element, normal).least_cosine;
 }
 
 void flood(const ElementGraph& graph, const FloodingRules& rules, SheetMap& sheets,

@@ -11,8 +11,8 @@
 namespace emap {
 namespace {
 
-constexpr int kIterations = 6;            // of flooding and fitting between seedings
-constexpr double kConverged = 0.002;      // share of elements that still change their patch
+constexpr int kIterations = 4;            // of flooding and fitting between seedings
+constexpr double kConverged = 0.005;      // share of elements that still change their patch
 constexpr double kLeastSeedShare = 1e-4;  // of the area: smaller leftovers get no seed here
 constexpr double kSeedsPerRound = 0.34;   // at most, per patch that there is
 

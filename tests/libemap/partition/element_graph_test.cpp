@@ -62,9 +62,8 @@ TEST(Coarsening, GroupsAreConnectedSmallAndComplete) {
   std::vector<int> sizes(coarsening.graph.size(), 0);
   for (std::size_t i = 0; i < fine.size(); ++i) {
     ++sizes[coarsening.group_of[i]];
-    const double angle =
-        std::acos(std::min(1.0, fine.normals[i].dot(coarsening.graph.normals[coarsening.group_of[i]])));
-    EXPECT_LE(angle, coarsening.graph.spreads[coarsening.group_of[i]] + 1e-6);
+    const std::uint32_t group = coarsening.group_of[i];
+    EXPECT_GE(fine.normals[i].dot(coarsening.graph.normals[group]), coarsening.graph.spread_cosines[group]);
   }
   for (const int size : sizes) EXPECT_LE(size, 20);
 }
