@@ -6,7 +6,7 @@
 #include <CGAL/Polygon_mesh_processing/repair_polygon_soup.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
-#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Edge_count_stop_predicate.h>
+#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_stop_predicate.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 
 #include <cstdio>
@@ -64,7 +64,7 @@ int main(int argc, char** argv) {
   SurfaceMesh simplified = manifold_mesh_of(*mesh);
   // A closed mesh has about three edges to a vertex.
   namespace simplification = CGAL::Surface_mesh_simplification;
-  const simplification::Edge_count_stop_predicate<SurfaceMesh> stop(3 * std::strtoul(argv[3], nullptr, 10));
+  const simplification::Count_stop_predicate<SurfaceMesh> stop(3 * std::strtoul(argv[3], nullptr, 10));
   simplification::edge_collapse(simplified, stop);
   return emap::write_ply(argv[2], plain_mesh_of(simplified)) ? 0 : 1;
 }
