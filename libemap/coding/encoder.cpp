@@ -200,8 +200,8 @@ class Search {
   Result<Encoded> finished(Trial trial) const {
     if (!trial.stream.empty() && !std::isfinite(trial.error))
       return Error{ErrorKind::input,
-                   fmt::format("nothing of the surface lies at the samples of {} to the diagonal; ask "
-                               "for more with --resolution",
+                   fmt::format("nothing of the surface lies at the samples of {} to the diagonal; set "
+                               "a finer --resolution",
                                trial.samples_per_diagonal)};
     if (!trial.meets_target && options_.bits_per_point)
       return Error{ErrorKind::configuration,
@@ -210,8 +210,8 @@ class Search {
                                *options_.bits_per_point, most_bytes_, surface_.planes().size())};
     if (!trial.meets_target)
       return Error{ErrorKind::configuration,
-                   fmt::format("{} dB were not reached; the best was {:.2f} dB at {} samples to the diagonal; ask for "
-                               "less, or for more with --resolution",
+                   fmt::format("{} dB were not reached; the best was {:.2f} dB at {} samples to the diagonal; set "
+                               "less, or set a finer --resolution",
                                *options_.psnr_db, psnr_db(trial.error), trial.samples_per_diagonal)};
     const std::size_t patches = read_stream_header(trial.stream)->patch_count;
     return Encoded{std::move(trial.stream), psnr_db(trial.error), trial.samples_per_diagonal, patches};
