@@ -210,7 +210,7 @@ class Search {
                                *options_.bits_per_point, most_bytes_, surface_.planes().size())};
     if (!trial.meets_target)
       return Error{ErrorKind::configuration,
-                   fmt::format("{} dB were not reached; the best was {:.2f} dB at {} samples to the diagonal; set "
+                   fmt::format("{} dB were not reached; the best was {:.2f} dB at {} samples to the diagonal; ask for "
                                "less, or set a finer --resolution",
                                *options_.psnr_db, psnr_db(trial.error), trial.samples_per_diagonal)};
     const std::size_t patches = read_stream_header(trial.stream)->patch_count;
