@@ -10,6 +10,9 @@ namespace emap {
 
 using Action = std::function<int()>;
 
+void add_encode_command(CLI::App& program, Action& action);
+void add_decode_command(CLI::App& program, Action& action);
+void add_info_command(CLI::App& program, Action& action);
 void add_compare_command(CLI::App& program, Action& action);
 void add_partition_command(CLI::App& program, Action& action);
 void add_resample_command(CLI::App& program, Action& action);

@@ -19,6 +19,9 @@ int main(int argc, char** argv) {
   program.set_version_flag("--version", thin::kVersion);
   program.require_subcommand(1);
   emap::Action action;
+  emap::add_encode_command(program, action);
+  emap::add_decode_command(program, action);
+  emap::add_info_command(program, action);
   emap::add_compare_command(program, action);
   emap::add_partition_command(program, action);
   emap::add_resample_command(program, action);

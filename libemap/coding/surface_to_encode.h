@@ -1,0 +1,46 @@
+#pragma once
+
+// What an encoder needs of a surface: cut into patches once, sampled over quantised planes at any spacing, and measured
+// against what comes out of the decoder. Meshes and point sets alike.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "libemap/elevation/elevation_map.h"
+#include "libemap/partition/partitioning.h"
+#include "libemap/surface/bounding_box.h"
+#include "libemap/surface/surface.h"
+#include "libthin/foundation/result.h"
+
+namespace emap {
+
+class SurfaceToEncode {
+ public:
+  virtual ~SurfaceToEncode() = default;
+
+  virtual bool is_points() const = 0;
+  virtual std::size_t point_count() const = 0;  // what bits per point are counted by: all vertices or points
+  virtual const BoundingBox& box() const = 0;
+  virtual const std::vector<BasePlane>& planes() const = 0;  // before quantisation, one for each patch
+
+  // Of the elements of a patch; a vertex of several triangles comes several times.
+  virtual std::vector<Eigen::Vector3d> positions_of(std::size_t patch) const = 0;
+
+  virtual ElevationMaps resample(std::span<const BasePlane> planes, double spacing) const = 0;
+
+  // E_rms of equation 3.2 between this surface and the decoded one, by samples of both;
+  // infinite where nothing was decoded.
+  virtual double error_of(const ElevationMaps& decoded) const = 0;
+};
+
+constexpr std::size_t kSteeringSamples = 200000;
+
+// samples: on each surface, for error_of(). Errors: as partition_mesh() and partition_points(). Points get normals
+// where they have none; what is sampled and measured of them is a dense mesh of their MLS surface.
+thin::Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(Mesh mesh, const PartitionOptions& options,
+                                                              std::size_t samples = kSteeringSamples);
+thin::Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const PartitionOptions& options,
+                                                                std::size_t samples = kSteeringSamples);
+
+}  // namespace emap
