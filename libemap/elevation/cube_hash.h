@@ -31,6 +31,13 @@ class CubeHash {
     });
   }
 
+  // Whether every cube that the box touches holds something.
+  bool covers(const Eigen::Vector3d& low, const Eigen::Vector3d& high) const {
+    bool all = true;
+    visit_cubes(low, high, [&](const Cube& cube) { all = all && table_[slot_of(cube)].first != kNone; });
+    return all;
+  }
+
   // Calls visit(item) for the items filed under the cubes that the box touches; once for each such cube.
   template <class Visitor>
   void visit(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const Visitor& visitor) const {

@@ -43,6 +43,7 @@ class GapFiller {
         options_(options),
         boundary_degree_(mesh.positions.size(), 0),
         vertices_(2 * spacing),
+        surroundings_(2 * spacing),
         triangles_(2 * spacing) {}
 
   GapFilling run() {
@@ -50,7 +51,7 @@ class GapFiller {
     GapFilling result;
     result.edges_before = boundary.size();
     file_vertices(boundary);
-    file_surroundings();
+    file_surroundings(boundary);
     const std::size_t triangles_before = mesh_.triangles.size();
     for (const BoundaryEdge& edge : boundary)
       propose(edge.from, edge.to, edge.opposite, reach_of((at(edge.from) - at(edge.to)).norm()));
@@ -85,16 +86,19 @@ class GapFiller {
         if (boundary_degree_[vertex]++ == 0) vertices_.add(vertex, at(vertex), at(vertex));
   }
 
-  // Triangles within reach of the boundary, and the sides of those at boundary vertices. The others can't be crossed,
-  // nor can their sides be taken twice.
-  void file_surroundings() {
-    CubeHash near(2 * spacing_);
-    for (std::uint32_t vertex = 0; vertex < boundary_degree_.size(); ++vertex)
-      if (boundary_degree_[vertex] > 0) near.mark(at(vertex).array() - 3 * spacing_, at(vertex).array() + 3 * spacing_);
+  // Triangles within reach of the boundary, and the sides of those at boundary vertices. The others can't be crossed by
+  // what is inserted, for that stays within the cubes that are looked through here; nor can their sides be taken twice.
+  void file_surroundings(const std::vector<BoundaryEdge>& boundary) {
+    for (const BoundaryEdge& edge : boundary) {
+      const double reach =
+          std::max(options_.small_hole_reach * spacing_, reach_of((at(edge.from) - at(edge.to)).norm()));
+      surroundings_.mark(at(edge.from).cwiseMin(at(edge.to)).array() - reach,
+                         at(edge.from).cwiseMax(at(edge.to)).array() + reach);
+    }
     for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
       const Triangle& triangle = mesh_.triangles[i];
       const auto [low, high] = box_of(triangle);
-      triangles_.add_where(near, i, low, high);
+      triangles_.add_where(surroundings_, i, low, high);
       for (std::size_t corner = 0; corner < 3; ++corner)
         if (boundary_degree_[triangle[corner]] > 0 && boundary_degree_[triangle[(corner + 1) % 3]] > 0)
           used_.insert(directed(triangle[corner], triangle[(corner + 1) % 3]));
@@ -102,7 +106,9 @@ class GapFiller {
   }
 
   // On steep slopes samples, and gaps, are wider than the spacing.
-  double reach_of(double side) const { return options_.reach * std::max(spacing_, side / 2); }
+  double reach_of(double side) const {
+    return (within_small_holes_ ? options_.small_hole_reach : options_.reach) * std::max(spacing_, side / 2);
+  }
 
   std::pair<Eigen::Vector3d, Eigen::Vector3d> box_of(const Triangle& triangle) const {
     return {at(triangle[0]).cwiseMin(at(triangle[1])).cwiseMin(at(triangle[2])),
@@ -182,6 +188,7 @@ class GapFiller {
   bool fits(const Candidate& candidate) {
     const Triangle triangle = {candidate.to, candidate.from, candidate.tip};
     const auto [low, high] = box_of(triangle);
+    if (!surroundings_.covers(low, high)) return false;
     bool crosses = false;
     triangles_.visit(low, high, [&, low = low, high = high](std::uint32_t other) {
       if (crosses) return;
@@ -217,9 +224,9 @@ class GapFiller {
   std::span<const std::uint32_t> patch_of_vertex_;
   Mesh& mesh_;
   const GapFillingOptions& options_;
-  std::vector<std::uint32_t> boundary_degree_;  // boundary edges at each vertex
-  CubeHash vertices_, triangles_;               // boundary vertices; triangles near them
-  std::unordered_set<std::uint64_t> used_;      // directed sides between boundary vertices that have a triangle
+  std::vector<std::uint32_t> boundary_degree_;    // boundary edges at each vertex
+  CubeHash vertices_, surroundings_, triangles_;  // boundary vertices; cubes around them, and the triangles in these
+  std::unordered_set<std::uint64_t> used_;        // directed sides between boundary vertices that have a triangle
   std::priority_queue<Candidate> candidates_;
   std::vector<Candidate> found_;
   std::size_t open_edges_ = 0;

@@ -14,11 +14,12 @@ namespace emap {
 struct GapFillingOptions {
   // Inserted sides that join two patches are at most so many sample spacings long, or half sides of the edge that they
   // start from where that is longer (on steep slopes): wider holes belong to the surface.
-  double reach = 4;
+  double reach = 2.5;
   // The same for sides within a patch: it has its own triangles wherever it is sampled without a hole.
   double reach_within = 1.6;
-  // Holes that are left with at most so many edges are closed by sides of any kind up to `reach`.
+  // Holes that are left with at most so many edges are closed by sides of any kind up to another reach.
   std::size_t small_hole_edges = 12;
+  double small_hole_reach = 4;
 };
 
 struct GapFilling {

@@ -114,7 +114,7 @@ void add_resample_command(CLI::App& program, Action& action) {
   command->add_option("output", arguments->output, "Surface of the samples")->required()->type_name("OUT.ply");
   command->add_option("--mu", arguments->mu, "Sampling interval; 1: as many samples as there are vertices [1]")
       ->check(CLI::PositiveNumber);
-  command->add_option("--reach", arguments->filling.reach, "Widest gap to close, in sampling intervals [3]")
+  command->add_option("--reach", arguments->filling.reach, "Widest gap to close, in sampling intervals [2.5]")
       ->check(CLI::PositiveNumber);
   command->add_flag("--points", arguments->as_points, "Take the vertices alone, and write samples");
   command->add_flag("--fit", arguments->fit, "Fit the elevations by least squares");
