@@ -262,9 +262,9 @@ EstimationSums::EstimationSums(NeighbourhoodTable table, std::span<const double>
   squares_.resize(table.observations);
   for (std::size_t p = 0; p < table.observations; ++p)
     squares_[p] = dot_product(values_.data() + p * width_, values_.data() + p * width_, width_);
-  points_.resize(points);
-  value_sums_.resize(points * width_);
-  references_.assign(points * width_, 0.0);
+  assign_in_large_pages(points_, points);
+  assign_in_large_pages(value_sums_, points * width_);
+  assign_in_large_pages(references_, points * width_);
   for (std::size_t q = 0; q < points; ++q) {
     const auto size = static_cast<std::uint32_t>(table.row_begin[q + 1] - table.row_begin[q]);
     points_[q] = {table.row_begin[q], size, size, 0, 0, 0, 0, 0, 0, 0};
@@ -400,7 +400,7 @@ void EstimationSums::track(Track which) {
   track_ = which;
   if (which == Track::nothing) return;
   part_rows();
-  pair_change_.assign(pair_observation_.size(), 0.0);
+  assign_in_large_pages(pair_change_, pair_observation_.size());
   deviation_.resize(width_);
   std::fill(increments_.begin(), increments_.end(), 0.0);
   for (std::size_t q = 0; q < points_.size(); ++q) {

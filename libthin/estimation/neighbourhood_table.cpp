@@ -229,8 +229,8 @@ NeighbourhoodTable joined(const Search& search, std::vector<Block>& blocks, cons
     table.row_begin.push_back(table.row_begin.back() + counts[q]);
     if (kept_points) kept_points->push_back(q);
   }
-  table.observation.resize(table.row_begin.back());
-  table.weight.resize(table.row_begin.back());
+  assign_in_large_pages(table.observation, table.row_begin.back());
+  assign_in_large_pages(table.weight, table.row_begin.back());
   parallel_ranges(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       std::ptrdiff_t next = 0;
@@ -253,8 +253,8 @@ void add_columns(NeighbourhoodTable& table) {
   for (std::size_t p = 0; p < table.observations; ++p) table.column_begin[p + 1] += table.column_begin[p];
 
   std::vector<std::uint64_t> next(table.column_begin.begin(), table.column_begin.end() - 1);
-  table.column_point.resize(table.entry_count());
-  table.column_weight.resize(table.entry_count());
+  assign_in_large_pages(table.column_point, table.entry_count());
+  assign_in_large_pages(table.column_weight, table.entry_count());
   for (std::size_t q = 0; q < table.evaluation_point_count(); ++q)
     for (std::uint64_t entry = table.row_begin[q]; entry < table.row_begin[q + 1]; ++entry) {
       const std::uint64_t place = next[table.observation[entry]]++;

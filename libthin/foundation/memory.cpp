@@ -1,6 +1,7 @@
 #include "libthin/foundation/memory.h"
 
 #include <malloc.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -70,6 +71,14 @@ std::optional<std::uint64_t> PeakMemory::bytes_above_start() const {
 
 std::uint64_t available_memory_bytes() {
   return std::min({left_by_the_machine(), left_by_the_address_space(), left_by_the_control_group()});
+}
+
+void advise_large_pages(void* begin, std::size_t bytes) {
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto address = reinterpret_cast<std::uintptr_t>(begin);
+  const std::uintptr_t first = (address + page - 1) / page * page, last = (address + bytes) / page * page;
+  // Advice: where it is not taken, nothing is lost.
+  if (last > first) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
 }
 
 }  // namespace thin
