@@ -8,8 +8,8 @@
 #include "libthin/formats/bufr_soundings.h"
 #include "libthin/formats/bufr_subsets.h"
 #include "libthin/formats/ecmwf_section2.h"
-#include "libthin/foundation/file_bytes.h"
 #include "libthin/formats/gts_bulletin.h"
+#include "libthin/foundation/file_bytes.h"
 
 namespace thin {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Soundings as CF discrete sampling, featureType "point": netCDF-4 that xarray, ncdump and anything else opens, and that
-// the reader of the layout "cf" takes for what they are. docs/formats.md documents it, name by name.
+// Soundings as CF discrete sampling, featureType "point": netCDF-4 that xarray, ncdump and anything else opens, and
+// that the reader of the layout "cf" takes for what they are. docs/formats.md documents it, name by name.
 
 #include <cstdint>
 #include <string>

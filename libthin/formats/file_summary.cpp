@@ -9,8 +9,8 @@
 #include <span>
 
 #include "libthin/formats/bufr_file.h"
-#include "libthin/foundation/file_bytes.h"
 #include "libthin/formats/file_layout.h"
+#include "libthin/foundation/file_bytes.h"
 #include "libthin/observations/geodesy.h"
 
 namespace thin {

@@ -11,8 +11,8 @@
 #include <cstring>
 #include <numeric>
 
-#include "libthin/foundation/file_bytes.h"
 #include "libthin/formats/netcdf_types.h"
+#include "libthin/foundation/file_bytes.h"
 
 namespace thin {
 namespace {

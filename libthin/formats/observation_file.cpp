@@ -5,9 +5,9 @@
 
 #include "libthin/formats/bufr_extraction.h"
 #include "libthin/formats/bufr_file.h"
-#include "libthin/foundation/file_bytes.h"
 #include "libthin/formats/file_layout.h"
 #include "libthin/formats/netcdf_layout.h"
+#include "libthin/foundation/file_bytes.h"
 
 namespace thin {
 

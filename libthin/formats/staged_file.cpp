@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include "libthin/foundation/file_bytes.h"
 #include "libthin/formats/netcdf_image.h"
+#include "libthin/foundation/file_bytes.h"
 
 namespace thin {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "libthin/foundation/file_bytes.h"
 #include "libthin/formats/shoreline_file.h"
+#include "libthin/foundation/file_bytes.h"
 
 namespace thin {
 namespace {

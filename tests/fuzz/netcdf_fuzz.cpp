@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "libthin/foundation/file_bytes.h"
 #include "libthin/formats/netcdf_layout.h"
+#include "libthin/foundation/file_bytes.h"
 
 namespace {
 

@@ -233,7 +233,8 @@ TEST_F(ThindAndThinTest, NetcdfGoesTheSameWay) {
   write_feedback(path("fofRAD.nc"), {.reports = 200});
   write_foreign_cf(path("mhs.nc"), 200);
   site_.window["mode"] = "\"per_file\"";
-  site_.rest = "[thinning]\nmethod = \"box\"\nhorizontal_mesh = 400\n[preparation]\nchannels = [\"amsua 1 2\", \"mhs 1 2\"]\n";
+  site_.rest =
+      "[thinning]\nmethod = \"box\"\nhorizontal_mesh = 400\n[preparation]\nchannels = [\"amsua 1 2\", \"mhs 1 2\"]\n";
   Process daemon = site_.start();
   for (const char* name : {"amsua_n19.nc4", "diag_amsua_n19_ges.nc4", "fofRAD.nc", "mhs.nc"})
     site_.deliver(name, content_of(path(name)));
