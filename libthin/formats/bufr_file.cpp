@@ -121,7 +121,7 @@ Result<ReadObservations> read_bufr(std::span<const std::uint8_t> bytes, const st
   const BufrScan scan = scan_bufr(bytes);
   if (const Result<void> complete = check_complete(scan, name); !complete) return complete.error();
   ReadObservations contents;
-  contents.layout = "bufr";
+  contents.layout = kBufrLayout;
   contents.message_count = static_cast<std::uint32_t>(scan.messages.size());
 
   Refusals refusals;

@@ -76,6 +76,13 @@ Result<ReadObservations> read_observations(std::span<const std::uint8_t> bytes, 
   }
 }
 
+Result<void> check_output(const std::string& layout, const OutputOptions& options) {
+  if (layout == kBufrLayout && options.mode == OutputOptions::Mode::flag)
+    return Error{ErrorKind::input,
+                 "BUFR has no flag for thinned observations. Set [output] mode = \"subset\", or keep BUFR away."};
+  return {};
+}
+
 Result<ExtractionSummary> extract_observations(const std::string& original_path,
                                                std::span<const SourceReference> retained,
                                                const std::string& output_path, const OutputOptions& options) {
@@ -83,10 +90,8 @@ Result<ExtractionSummary> extract_observations(const std::string& original_path,
   if (!bytes) return bytes.error();
   switch (layout_of(*bytes)) {
     case FileLayout::bufr:
-      if (options.mode == OutputOptions::Mode::flag)
-        return Error{ErrorKind::configuration, original_path +
-                                                   ": BUFR has no flag for thinned observations. Set [output] "
-                                                   "mode = \"subset\"."};
+      if (const Result<void> possible = check_output(kBufrLayout, options); !possible)
+        return Error{possible.error().kind, original_path + ": " + possible.error().message};
       return extract_bufr(*bytes, original_path, retained, output_path, options);
     case FileLayout::netcdf:
       return extract_netcdf(*bytes, original_path, retained, output_path, options);

@@ -21,6 +21,9 @@ struct SkippedPart {
   std::string reason;
 };
 
+// ReadObservations::layout of files of BUFR messages.
+inline const std::string kBufrLayout = "bufr";
+
 struct ReadObservations {
   ObservationSet observations;  // AMSU-A: channels 1..15; source.file is 0
   std::string layout;           // "bufr", "ioda", "gsi_diagnostics", "feedback", "cf"
@@ -86,6 +89,10 @@ struct OutputOptions {
   OtherMessages other_messages = OtherMessages::keep;  // of kinds that are not thinned
   void declare(OptionTable& table);
 };
+
+// Can files of this layout (ReadObservations::layout) be written so? To be asked before thinning, which takes longer.
+// Errors: input, with the reason and the remedy.
+Result<void> check_output(const std::string& layout, const OutputOptions& options);
 
 struct ExtractionSummary {
   std::uint32_t messages = 0;

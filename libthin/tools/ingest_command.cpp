@@ -40,18 +40,21 @@ OutcomeJson staged_json(const ReadObservations& contents) {
 }
 
 int ingest(const Arguments& arguments) {
-  InputOptions options;
+  InputOptions input;
+  OutputOptions output;
   if (!arguments.configuration.empty()) {
     const Result<Settings> settings = read_settings(arguments.configuration);
     if (!settings) return fail(settings.error());
-    options = settings->input;
+    input = settings->input;
+    output = settings->output;
   }
 
   StepSeconds seconds;
   StepClock clock(seconds);
-  const Result<ReadObservations> contents = read_observations(arguments.input, options);
+  const Result<ReadObservations> contents = read_observations(arguments.input, input);
   if (!contents) return fail(without_path(contents.error(), arguments.input));
   if (contents->observations.size() == 0) return fail({ErrorKind::input, "it holds no observation that can be used"});
+  if (const Result<void> possible = check_output(contents->layout, output); !possible) return fail(possible.error());
   clock.finish("read");
 
   const std::string temporary = arguments.output + ".tmp";

@@ -61,11 +61,14 @@ struct Inputs {
 };
 
 // Reads what can be read. Errors: temporary ones; what is wrong with a file refuses that file alone.
-Result<Inputs> read_inputs(const std::vector<std::string>& paths, const InputOptions& options) {
+Result<Inputs> read_inputs(const std::vector<std::string>& paths, const Settings& settings) {
   Inputs inputs;
   for (const std::string& path : paths) {
-    Result<ReadObservations> contents = read_observations(path, options);
+    Result<ReadObservations> contents = read_observations(path, settings.input);
     const std::string name = fs::path(path).filename();
+    if (contents)
+      if (const Result<void> possible = check_output(contents->layout, settings.output); !possible)
+        contents = possible.error();
     if (contents && contents->observations.size() > 0) {
       for (const SkippedPart& part : contents->skipped)
         spdlog::warn("{}: message {} at byte {}: {}", path, part.message, part.offset, part.reason);
@@ -108,7 +111,7 @@ Result<int> run(const Arguments& arguments) {
 
   StepSeconds seconds;
   StepClock clock(seconds);
-  Result<Inputs> inputs = read_inputs(arguments.files, settings->input);
+  Result<Inputs> inputs = read_inputs(arguments.files, *settings);
   if (!inputs) return inputs.error();
   clock.finish("read");
   const bool some_refused = !inputs->refused.empty();

@@ -132,6 +132,20 @@ TEST_F(StepsTest, RunTakesInnovationsFromNetcdfAndFlagsWhereAskedTo) {
   EXPECT_EQ(Json::parse(std::ifstream(out_ + "/report.json"))["files"][0]["notes"][0], "innovations: ObsValue - hofx");
 }
 
+TEST_F(StepsTest, BufrThatWouldHaveToBeFlaggedIsRefusedBeforeAnyWork) {
+  const std::string flags = write_text(scratch_.path("f.toml"),
+                                       "[thinning]\nmethod = \"box\"\nhorizontal_mesh = 400\n"
+                                       "[preparation]\nchannels = [1, 2]\n[output]\nmode = \"flag\"\n");
+  const Outcome ingested = call({"ingest", "-c", flags, "--input", good_, "--output", scratch_.path("s.nc")});
+  EXPECT_EQ(ingested.exit_status, exit_code(ErrorKind::input));
+  EXPECT_FALSE(std::filesystem::exists(scratch_.path("s.nc")));
+  const std::string ioda = test::write_ioda(scratch_.path("amsua_n19.nc4"), {.locations = 200});
+  EXPECT_EQ(call({"run", "-c", flags, "-o", out_, good_, ioda}).exit_status, exit_code(ErrorKind::input));
+  const Json report = Json::parse(std::ifstream(out_ + "/report.json"));
+  ASSERT_EQ(report["refused"].size(), 1U);
+  EXPECT_NE(report["refused"][0]["reason"].get<std::string>().find("mode = \"subset\""), std::string::npos);
+}
+
 TEST_F(StepsTest, RunSaysTwoForABadConfiguration) {
   const std::string wrong = write_text(scratch_.path("w.toml"), "[thinning]\nmethod = \"grid_eea\"\n");
   EXPECT_EQ(call({"run", "-c", wrong, "-o", out_, good_}).exit_status, 2);
