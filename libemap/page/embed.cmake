@@ -1,0 +1,13 @@
+# Writes OUTPUT, the definitions of page_sources.h, from the lists of files DOCUMENT, STYLE, DECODER and VIEWER.
+set(text "#include \"libemap/page/page_sources.h\"\n\nnamespace emap {\n")
+foreach(part Document Style Decoder Viewer)
+  string(TOUPPER ${part} list)
+  string(APPEND text "\nconst std::string_view kPage${part} =\n")
+  foreach(file ${${list}})
+    file(READ ${file} content)
+    string(APPEND text "R\"emap_page(${content})emap_page\"\n")
+  endforeach()
+  string(APPEND text ";\n")
+endforeach()
+string(APPEND text "\n}  // namespace emap\n")
+file(WRITE ${OUTPUT} "${text}")
