@@ -106,7 +106,7 @@ function patch_matrix(patch, range, header) {
   return columns.map((column) => scaled(1 / header.diagonal, column));
 }
 
-// What the page needs to draw a decoded stream; `transferable` lists its buffers.
+// What the page needs to draw a decoded stream, but for the gaps between patches.
 //
 // cells: Uint16Array, 3 to a cell, patch by patch. patches: { first_cell, columns, matrix, indices }, the indices being cells
 // of the patch's own map: 16 bits where they fit.
@@ -128,8 +128,4 @@ function build_model(stream, progress = () => {}) {
     progress("model", (i + 1) / patches.length);
   });
   return model;
-}
-
-function buffers_of(model) {
-  return [model.cells.buffer, ...model.patches.map((patch) => patch.indices.buffer)];
 }

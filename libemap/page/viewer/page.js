@@ -10,15 +10,28 @@ class Page {
     this.changed = false;
   }
 
-  // Fulfilled when the model is on the screen; rejected, with what is wrong as message, when it can't be.
+  // Fulfilled when the whole model is on the screen; rejected, with what is wrong as message, when it can't be.
   async open() {
     this.start_drawing();
     const bytes = stream_bytes(document.getElementById("stream"));
-    this.model = await decode_beside(bytes, (done) => (document.getElementById("progress").value = done));
-    this.renderer.upload(this.model);
+    await decode_beside(bytes, (message) => this.take(message));
+  }
+
+  // What the decoder sends, one by one (decoder/worker.js).
+  take({ progress, model, gaps }) {
+    if (progress !== undefined) document.getElementById("progress").value = progress;
+    if (!model && !gaps) return;
+    this.upload(model, gaps);
     this.draw();
+    if (model) this.model = model;
+    if (gaps) this.gaps = gaps;
     this.describe();
     document.body.dataset.state = "drawn";
+  }
+
+  upload(model, gaps) {
+    if (model) this.renderer.upload(model);
+    if (gaps) this.renderer.upload_gaps(gaps);
   }
 
   start_drawing() {
@@ -38,7 +51,7 @@ class Page {
     this.canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
     this.canvas.addEventListener("webglcontextrestored", () => {
       this.renderer = new Renderer(gl);
-      if (this.model) this.renderer.upload(this.model);
+      this.upload(this.model, this.gaps);
       this.draw_soon();
     });
   }
@@ -86,29 +99,30 @@ function stream_bytes(element) {
   }
 }
 
-// The model of a stream, by a worker where the browser allows one, else by the page itself.
-function decode_beside(bytes, report) {
+// Hands on what the decoder sends, take(message); fulfilled behind the last. By a worker where the browser allows one, else
+// by the page itself.
+function decode_beside(bytes, take) {
   return new Promise((resolve, reject) => {
-    const decode_here = () => setTimeout(() => {
+    const take_next = (message) => {
       try {
-        resolve(decode_model(bytes, report));
+        if (message.error) throw new Error(message.error);
+        take(message);
+        if (message.gaps !== undefined) resolve();
       } catch (error) {
-        reject(new Error(message_of(error)));
+        reject(error);
       }
-    });
+    };
+    const decode_here = () => setTimeout(() => decode_in_steps(bytes, take_next));
     let worker;
     try {
       const source = new Blob([document.getElementById("decoder").textContent], { type: "text/javascript" });
       worker = new Worker(URL.createObjectURL(source));
     } catch {
-      decode_here();
-      return;
+      return decode_here();
     }
     worker.onmessage = ({ data }) => {
-      if (data.progress !== undefined) return report(data.progress);
-      worker.terminate();
-      if (data.model) resolve(data.model);
-      else reject(new Error(data.error));
+      take_next(data);
+      if (data.error || data.gaps !== undefined) worker.terminate();
     };
     worker.onerror = (event) => {
       event.preventDefault();

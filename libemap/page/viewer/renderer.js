@@ -7,6 +7,7 @@ class Renderer {
   // gl: a WebGL 2 context.
   constructor(gl) {
     this.gl = gl;
+    this.textures = [null, null];
     this.program = linked_program(gl, VERTEX_SHADER, FRAGMENT_SHADER);
     this.uniforms = Object.fromEntries(
       ["cells", "planes", "camera", "eye", "shading"].map((name) => [name, gl.getUniformLocation(this.program, name)]));
@@ -16,32 +17,38 @@ class Renderer {
 
   // Error: the model does not fit into the card's textures.
   upload(model) {
-    const gl = this.gl, cell_count = model.cells.length / 3;
-    const most = gl.getParameter(gl.MAX_TEXTURE_SIZE), width = Math.min(most, 4096);
-    const height = Math.max(1, Math.ceil(cell_count / width));
-    if (height > most) throw new Error(`maps of ${cell_count} cells do not fit into this graphics card's textures`);
-    const cells = new Uint16Array(3 * width * height);
-    cells.set(model.cells);
-    this.bind_texture(0, gl.RGB16UI, width, height, gl.RGB_INTEGER, gl.UNSIGNED_SHORT, cells);
-    this.upload_planes(model, width);
+    this.upload_cells(model.cells);
+    this.upload_planes(model);
     this.upload_indices(model);
-    this.texture_bytes = cells.byteLength;
   }
 
-  upload_planes(model, cells_width) {
-    const gl = this.gl, height = Math.max(1, Math.ceil((4 * model.patches.length) / PLANES_WIDTH));
+  upload_cells(given) {
+    const gl = this.gl, count = given.length / 3, most = gl.getParameter(gl.MAX_TEXTURE_SIZE);
+    this.cells_width = Math.min(most, 4096);
+    const height = Math.max(1, Math.ceil(count / this.cells_width));
+    if (height > most) throw new Error(`Maps of ${count} cells do not fit into this graphics card's textures.`);
+    const cells = new Uint16Array(3 * this.cells_width * height);
+    cells.set(given);
+    this.set_texture(0, gl.RGB16UI, this.cells_width, height, gl.RGB_INTEGER, gl.UNSIGNED_SHORT, cells);
+  }
+
+  upload_planes(model) {
+    const { gl, cells_width } = this;
+    const height = Math.max(1, Math.ceil((4 * model.patches.length) / PLANES_WIDTH));
     const planes = new Float32Array(4 * PLANES_WIDTH * height);
     model.patches.forEach((patch, i) => {
       const place = [patch.columns, Math.floor(patch.first_cell / cells_width), patch.first_cell % cells_width, 0];
       patch.matrix.forEach((column, c) => planes.set([...column, place[c]], 16 * i + 4 * c));
     });
-    this.bind_texture(1, gl.RGBA32F, PLANES_WIDTH, height, gl.RGBA, gl.FLOAT, planes);
+    this.set_texture(1, gl.RGBA32F, PLANES_WIDTH, height, gl.RGBA, gl.FLOAT, planes);
   }
 
-  bind_texture(unit, internal_format, width, height, format, type, values) {
+  set_texture(unit, internal_format, width, height, format, type, values) {
     const gl = this.gl;
     gl.activeTexture(gl.TEXTURE0 + unit);
-    gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
+    gl.deleteTexture(this.textures[unit]);
+    this.textures[unit] = gl.createTexture();
+    gl.bindTexture(gl.TEXTURE_2D, this.textures[unit]);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
@@ -63,6 +70,21 @@ class Renderer {
     model.patches.forEach(({ indices }, i) => gl.bufferSubData(gl.ELEMENT_ARRAY_BUFFER, this.draws[i].offset, indices));
   }
 
+  // gaps: decoder/closed_surface.js
+  upload_gaps(gaps) {
+    const gl = this.gl;
+    this.upload_cells(gaps.cells);
+    this.gap_vertices = gl.createVertexArray();
+    gl.bindVertexArray(this.gap_vertices);
+    gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ARRAY_BUFFER, gaps.corners, gl.STATIC_DRAW);
+    gl.vertexAttribIPointer(0, 2, gl.UNSIGNED_INT, 0, 0);
+    gl.enableVertexAttribArray(0);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, gaps.indices, gl.STATIC_DRAW);
+    this.gap_corners = gaps.indices.length;
+  }
+
   // shading: one of SHADINGS.
   draw(camera, shading) {
     const gl = this.gl, width = gl.drawingBufferWidth, height = gl.drawingBufferHeight;
@@ -80,6 +102,9 @@ class Renderer {
       gl.vertexAttribI4ui(0, patch, NO_CELL, 0, 0);
       gl.drawElements(gl.TRIANGLES, count, type, offset);
     });
+    if (!this.gap_vertices) return;
+    gl.bindVertexArray(this.gap_vertices);
+    gl.drawElements(gl.TRIANGLES, this.gap_corners, gl.UNSIGNED_INT, 0);
   }
 }
 

@@ -59,14 +59,14 @@ in vec3 normal;
 flat in uint patch_number;
 out vec4 colour;
 
-// A room with a light ceiling, a darker floor and window bars.
+// A room with a light ceiling, a dark floor and a long window on each side.
 vec3 room(vec3 direction) {
   float height = direction.y;
-  vec3 wall = mix(vec3(0.28, 0.27, 0.26), vec3(0.96, 0.97, 1.0), smoothstep(-0.35, 0.75, height));
-  float around = atan(direction.x, direction.z) * (12.0 / 6.28318530718);
-  float bar = smoothstep(0.42, 0.47, abs(fract(around) - 0.5)) * smoothstep(0.95, 0.8, abs(height));
-  float ring = smoothstep(0.03, 0.02, abs(height - 0.3)) + smoothstep(0.03, 0.02, abs(height + 0.3));
-  return wall * (1.0 - 0.45 * clamp(bar + ring, 0.0, 1.0));
+  vec3 wall = mix(vec3(0.20, 0.19, 0.18), vec3(0.72, 0.74, 0.78), smoothstep(-0.9, 0.9, height));
+  float window = smoothstep(0.05, 0.20, height) * smoothstep(0.75, 0.60, height) *
+                 smoothstep(0.35, 0.60, abs(direction.x));
+  float lamp = smoothstep(0.90, 0.97, height);
+  return mix(wall, vec3(1.0), max(window, lamp));
 }
 
 // Neighbouring numbers get hues that lie far apart.
