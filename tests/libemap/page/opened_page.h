@@ -1,0 +1,57 @@
+#pragma once
+
+// Pages opened in the browser, for the tests of this folder.
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "libemap/coding/stream.h"
+#include "libemap/page/page.h"
+#include "tests/support/browser.h"
+
+namespace emap::test {
+
+// What the browser is asked for beside the page's own functions.
+constexpr const char* kPack = R"(
+  const pack = (values) => {
+    const bytes = new Uint8Array(values.buffer, values.byteOffset, values.byteLength);
+    let text = "";
+    for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
+    return btoa(text);
+  };
+)";
+
+class PageTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!Browser::installed()) GTEST_SKIP() << "no chromium on this machine";
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  // Writes the page and returns its address.
+  std::string address_of(const std::string& html) const {
+    const std::filesystem::path path = folder_ / "page.html";
+    std::ofstream(path, std::ios::binary) << html;
+    return "file://" + path.string();
+  }
+
+  // Opens the page and waits until it is drawn or says why it is not: "drawn", or the message.
+  std::string open(Browser& browser, const std::string& html, const std::string& view = "", int width = 400,
+                   int height = 300) const {
+    browser.open(address_of(html) + view, width, height);
+    return browser.evaluate(R"(opened.then(() => document.body.dataset.state === "failed"
+        ? document.getElementById("message").innerText : document.body.dataset.state))");
+  }
+
+ private:
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("emap_page_" + std::to_string(::getpid()));
+};
+
+}  // namespace emap::test
