@@ -3,10 +3,10 @@
 "use strict";
 
 const FIELD_OF_VIEW_DEGREES = 30;  // vertical
-const START = { azimuth: 25, elevation: 15, distance: 2 };
+const START = { azimuth: 30, elevation: 15, distance: 2 };
 const STEEPEST_ELEVATION = 89;
 const NEAREST = 0.2, FARTHEST = 10;
-const MODEL_RADIUS = 0.5;  // half a diagonal
+const MODEL_RADIUS = 0.52;  // half a diagonal, and what a decoded surface may stick out
 
 function radians(degrees) {
   return (degrees * Math.PI) / 180;
