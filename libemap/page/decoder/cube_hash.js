@@ -17,13 +17,16 @@ class CubeHash {
     this.used = 0;
   }
 
+  index(coordinate, axis) {
+    return Math.floor((coordinate - this.least[axis]) / this.side) + 64;
+  }
+
   // Calls visit(key) for the cubes that a box { low, high } touches, until it returns true; whether it did.
   some_cube({ low, high }, visit) {
-    const index = (coordinate, axis) => Math.floor((coordinate - this.least[axis]) / this.side) + 64;
-    const [end_x, end_y, end_z] = high.map(index), [x0, y0, z0] = low.map(index);
-    for (let z = z0; z <= end_z; ++z)
-      for (let y = y0; y <= end_y; ++y)
-        for (let x = x0; x <= end_x; ++x) if (visit((z * 131072 + y) * 131072 + x)) return true;
+    const end_x = this.index(high[0], 0), end_y = this.index(high[1], 1), end_z = this.index(high[2], 2);
+    for (let z = this.index(low[2], 2); z <= end_z; ++z)
+      for (let y = this.index(low[1], 1); y <= end_y; ++y)
+        for (let x = this.index(low[0], 0); x <= end_x; ++x) if (visit((z * 131072 + y) * 131072 + x)) return true;
     return false;
   }
 

@@ -88,25 +88,29 @@ class GapFiller {
     return [this.triangles[3 * number], this.triangles[3 * number + 1], this.triangles[3 * number + 2]];
   }
 
+  box_of_triangle([a, b, c]) {
+    return box_of(0, this.at(a), this.at(b), this.at(c));
+  }
+
   file_boundary() {
     for (const { from, to } of this.boundary)
       for (const vertex of [from, to])
-        if (this.boundary_degree[vertex]++ === 0) this.vertices.add(vertex, box_of([this.at(vertex)], 0));
+        if (this.boundary_degree[vertex]++ === 0) this.vertices.add(vertex, box_of(0, this.at(vertex), this.at(vertex)));
   }
 
   // Triangles near enough to the boundary to be crossed, and the sides of those at boundary vertices.
   file_surroundings() {
     for (const edge of this.boundary) {
       const reach = Math.max(SMALL_HOLE_REACH * this.spacing, this.reach_of(edge));
-      this.surroundings.mark(box_of([this.at(edge.from), this.at(edge.to)], reach));
+      this.surroundings.mark(box_of(reach, this.at(edge.from), this.at(edge.to)));
     }
     for (let i = 0; i < this.triangles.length / 3; ++i) {
       const triangle = this.triangle(i);
-      this.filed.add_where(this.surroundings, i, box_of(triangle.map(this.at), 0));
-      triangle.forEach((from, corner) => {
-        const to = triangle[(corner + 1) % 3];
+      this.filed.add_where(this.surroundings, i, this.box_of_triangle(triangle));
+      for (let corner = 0; corner < 3; ++corner) {
+        const from = triangle[corner], to = triangle[(corner + 1) % 3];
         if (this.boundary_degree[from] > 0 && this.boundary_degree[to] > 0) this.used.add(this.side(from, to));
-      });
+      }
     }
   }
 
@@ -120,8 +124,8 @@ class GapFiller {
   propose({ from, to, opposite }, reach) {
     const a = this.at(from), b = this.at(to);
     const normal = normalised(cross(difference_of(b, a), difference_of(this.at(opposite), a)));
-    const found = [];
-    this.vertices.some(box_of([scaled(0.5, sum_of(a, b))], reach), (tip) => {
+    const middle = scaled(0.5, sum_of(a, b)), found = [];
+    this.vertices.some(box_of(reach, middle, middle), (tip) => {
       if (tip === from || tip === to || this.boundary_degree[tip] === 0) return false;
       const score = this.score_of(from, to, tip, normal, reach);
       if (score < Infinity) found.push({ score, from, to, tip, reach });
@@ -178,17 +182,17 @@ class GapFiller {
   }
 
   fits({ from, to, tip }) {
-    const triangle = [to, from, tip], box = box_of(triangle.map(this.at), 0);
+    const triangle = [to, from, tip], box = this.box_of_triangle(triangle);
     if (!this.surroundings.covers(box)) return false;
     return !this.filed.some(box, (number) => {
       const other = this.triangle(number);
-      return boxes_meet(box, box_of(other.map(this.at), 0)) && triangles_cross(this.at, triangle, other);
+      return boxes_meet(box, this.box_of_triangle(other)) && triangles_cross(this.at, triangle, other);
     });
   }
 
   insert({ from, to, tip, reach }) {
     const triangle = [to, from, tip];
-    this.filed.add(this.triangles.length / 3 + this.inserted.length, box_of(triangle.map(this.at), 0));
+    this.filed.add(this.triangles.length / 3 + this.inserted.length, this.box_of_triangle(triangle));
     this.inserted.push(triangle);
     this.take_side(to, from);
     this.take_side(from, tip);
@@ -211,16 +215,17 @@ function distance_squared(a, b) {
   return dot(difference, difference);
 }
 
-function box_of(points, margin) {
-  const low = points[0].slice(), high = points[0].slice();
-  for (const point of points)
-    for (let axis = 0; axis < 3; ++axis) {
-      low[axis] = Math.min(low[axis], point[axis]);
-      high[axis] = Math.max(high[axis], point[axis]);
-    }
-  return { low: low.map((x) => x - margin), high: high.map((x) => x + margin) };
+// What holds the points a to b, or c, and a margin around them.
+function box_of(margin, a, b, c = b) {
+  const low = [0, 0, 0], high = [0, 0, 0];
+  for (let axis = 0; axis < 3; ++axis) {
+    low[axis] = Math.min(a[axis], b[axis], c[axis]) - margin;
+    high[axis] = Math.max(a[axis], b[axis], c[axis]) + margin;
+  }
+  return { low, high };
 }
 
 function boxes_meet(a, b) {
-  return [0, 1, 2].every((axis) => a.low[axis] <= b.high[axis] && b.low[axis] <= a.high[axis]);
+  for (let axis = 0; axis < 3; ++axis) if (a.low[axis] > b.high[axis] || b.low[axis] > a.high[axis]) return false;
+  return true;
 }
