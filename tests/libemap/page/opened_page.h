@@ -34,11 +34,13 @@ class PageTest : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
+  // Of a file of this test alone.
+  std::string path(const std::string& name) const { return folder_ / name; }
+
   // Writes the page and returns its address.
   std::string address_of(const std::string& html) const {
-    const std::filesystem::path path = folder_ / "page.html";
-    std::ofstream(path, std::ios::binary) << html;
-    return "file://" + path.string();
+    std::ofstream(path("page.html"), std::ios::binary) << html;
+    return "file://" + path("page.html");
   }
 
   // Opens the page and waits until it is drawn or says why it is not: "drawn", or the message.

@@ -4,14 +4,13 @@
 
 #include <cmath>
 
-#include "libemap/coding/encoder.h"
 #include "libemap/elevation/canonical_mesh.h"
 #include "libemap/elevation/gap_filling.h"
 #include "libemap/surface/boundary_edges.h"
 #include "libemap/surface/mesh_normals.h"
 #include "tests/libemap/page/opened_page.h"
+#include "tests/libemap/page/ring_model.h"
 #include "tests/support/drawn_mesh.h"
-#include "tests/support/surfaces.h"
 
 namespace emap {
 namespace {
@@ -19,21 +18,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 using nlohmann::json;
 using test::Browser;
-
-// A ring, longer than wide, with a bump on one side: no view of it is another's mirror image.
-Bytes ring_stream(const std::string& coder) {
-  Mesh mesh = test::torus(40);
-  for (Eigen::Vector3d& position : mesh.positions) {
-    position.x() *= 1.4;
-    position *= 1 + 0.25 * std::exp(-(position - Eigen::Vector3d(2, 2, 0.5)).squaredNorm());
-  }
-  const auto surface = mesh_to_encode(mesh, {}, 2000);
-  EncoderOptions options;
-  options.psnr_db = 62;
-  options.samples_per_diagonal = 200;
-  options.coder = find_elevation_coder(coder);
-  return encode_surface(**surface, options).value().stream;
-}
+using test::ring_stream;
 
 std::string link_of(const test::View& view, const std::string& shading) {
   return fmt::format("#azimuth={}&elevation={}&distance={}&shading={}", view.azimuth_degrees, view.elevation_degrees,
