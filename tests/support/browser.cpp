@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::seconds kPatience{60};
+constexpr std::chrono::seconds kPatience{100};  // a loaded machine is slow
 constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 [[noreturn]] void give_up(const std::string& what) {
@@ -63,17 +63,28 @@ Browser::Browser(const std::vector<std::string>& further_flags) {
 }
 
 Browser::~Browser() {
-  if (process_ > 0) {
-    ::kill(-process_, SIGKILL);
-    ::waitpid(process_, nullptr, 0);
-  }
+  if (process_ > 0) end();
   ::close(to_browser_);
   ::close(from_browser_);
   std::error_code ignored;  // a dying helper process may still write there
   std::filesystem::remove_all(profile_, ignored);
 }
 
+// Asked to, it ends its helper processes before itself.
+void Browser::end() {
+  session_.clear();
+  try {
+    call("Browser.close");
+    wait_for([](const json&) { return false; });
+  } catch (const std::runtime_error&) {
+    // "it ended", or it hangs: gone it is behind the next line.
+  }
+  ::kill(-process_, SIGKILL);
+  ::waitpid(process_, nullptr, 0);
+}
+
 void Browser::start(const std::vector<std::string>& flags) {
+  ::signal(SIGPIPE, SIG_IGN);  // a browser that died is told of by errno
   const auto [command_out, command_in] = new_pipe();
   const auto [answer_out, answer_in] = new_pipe();
   std::vector<char*> words;

@@ -20,7 +20,7 @@ class Browser {
   static std::optional<std::string> installed();
 
   // further_flags: of the command line. REQUIRES: installed(). Throws std::runtime_error, as all that follows, where
-  // the browser does not start or does not answer within a minute.
+  // the browser does not start or does not answer for 100 seconds.
   explicit Browser(const std::vector<std::string>& further_flags = {});
   ~Browser();
   Browser(const Browser&) = delete;
@@ -40,6 +40,7 @@ class Browser {
 
  private:
   void start(const std::vector<std::string>& flags);
+  void end();
   void send(const std::string& message) const;
   nlohmann::json receive(std::chrono::steady_clock::time_point deadline);
   template <class Accepts>
