@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libemap/elevation/canonical_mesh.h"
@@ -146,6 +147,12 @@ class VisitorTest : public test::PageTest {
   static json camera(Browser& browser) {
     return browser.evaluate("[page.camera.azimuth, page.camera.elevation, page.camera.distance]");
   }
+  // The same page with a script before its own.
+  static std::string with_script(const std::string& script) {
+    const std::string head = "<head>";
+    std::string html = page();
+    return html.replace(html.find(head), head.size(), head + "<script>" + script + "</script>");
+  }
   // The same page with other bytes for its model.
   static std::string with_stream(const std::string& base64) {
     const std::string start = "octet-stream;base64\">";
@@ -240,12 +247,48 @@ TEST_F(VisitorTest, WithoutWebGlItSaysSo) {
   EXPECT_NE(message.find("WebGL 2"), std::string::npos) << message;
 }
 
-TEST_F(VisitorTest, WithoutWorkersItDecodesByItself) {
-  std::string html = page();
-  const std::string head = "<head>";
-  html.replace(html.find(head), head.size(), head + "<script>delete window.Worker;</script>");
+TEST_F(VisitorTest, DecodesInAWorkerAndSaysHowFarItIs) {
   Browser browser;
-  EXPECT_EQ(open(browser, html), "drawn");
+  ASSERT_EQ(open(browser, with_script(R"(
+    window.Worker = class extends Worker {
+      constructor(address) {
+        super(address);
+        window.messages = [];
+        this.addEventListener("message", ({ data }) => window.messages.push(data));
+      }
+    };)")),
+            "drawn");
+  const json names = browser.evaluate("messages.map((message) => Object.keys(message)[0])");
+  ASSERT_GE(names.size(), 5U);
+  EXPECT_EQ(names[names.size() - 2], "model");
+  EXPECT_EQ(names[names.size() - 1], "gaps");
+  const json progress = browser.evaluate("messages.map((message) => message.progress).filter((done) => done >= 0)");
+  EXPECT_EQ(progress.size(), names.size() - 2);
+  EXPECT_TRUE(std::is_sorted(progress.begin(), progress.end()));
+  EXPECT_EQ(progress.back(), 1);
+}
+
+TEST_F(VisitorTest, WithoutWorkersItDecodesByItself) {
+  Browser browser;
+  EXPECT_EQ(open(browser, with_script("delete window.Worker;")), "drawn");
+}
+
+TEST_F(VisitorTest, DrawsAgainWhenTheGraphicsCardWasLost) {
+  const test::View view{30, 15, 2, 200, 200};
+  Browser browser;
+  ASSERT_EQ(open(browser, page(), "", view.width, view.height), "drawn");
+  const auto before = pixels_of(browser, view);
+  browser.evaluate(R"((async () => {
+    const gl = page.renderer.gl, loss = gl.getExtension("WEBGL_lose_context");
+    const happens = (name) => new Promise((resolve) => page.canvas.addEventListener(name, () => setTimeout(resolve)));
+    const lost = happens("webglcontextlost");
+    loss.loseContext();
+    await lost;
+    const restored = happens("webglcontextrestored");
+    loss.restoreContext();
+    await restored;
+  })())");
+  EXPECT_EQ(pixels_of(browser, view), before);
 }
 
 }  // namespace
