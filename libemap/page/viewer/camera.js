@@ -17,8 +17,11 @@ function limited(x, low, high) {
 }
 
 class Camera {
-  constructor(parameters = {}) {
-    this.start = { ...START, ...parameters };
+  // given: what of azimuth, elevation and distance is not to be as usual. In views that are higher than wide (aspect: width /
+  // height) one starts farther off, so that long models fit.
+  constructor(given, aspect) {
+    const distance = START.distance * Math.max(1, 0.8 / aspect);
+    this.start = { ...START, distance, ...given };
     this.reset();
   }
 

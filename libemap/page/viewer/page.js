@@ -6,7 +6,7 @@ class Page {
     this.canvas = document.getElementById("view");
     this.shading = view.shading || "lighting";
     delete view.shading;
-    this.camera = new Camera(view);
+    this.camera = new Camera(view, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight));
     this.changed = false;
   }
 

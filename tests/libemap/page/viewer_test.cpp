@@ -225,6 +225,17 @@ TEST_F(VisitorTest, IsTurnedByMouseKeysAndFingers) {
   EXPECT_EQ(camera(browser), json({10, 20, 2}));
 }
 
+TEST_F(VisitorTest, StartsFartherOffInANarrowView) {
+  Browser browser;
+  ASSERT_EQ(open(browser, page(), "", 600, 400), "drawn");
+  EXPECT_EQ(camera(browser), json({30, 15, 2}));
+  ASSERT_EQ(open(browser, page(), "", 300, 600), "drawn");
+  EXPECT_NEAR(camera(browser)[2].get<double>(), 3.2, 1e-9);
+  browser.open("about:blank", 10, 10);
+  ASSERT_EQ(open(browser, page(), "#distance=2.5", 300, 600), "drawn");
+  EXPECT_EQ(camera(browser), json({30, 15, 2.5}));
+}
+
 TEST_F(VisitorTest, DamagedModelsAreNamedAsSuch) {
   const std::string whole = test::base64_of(ring_stream("contexts"));
   std::string changed = whole;
