@@ -1,5 +1,6 @@
 // The page's decoder against libemap/coding, in the browser: masks and elevations are the same to the last bit.
 
+#include <cmath>
 #include <cstring>
 #include <random>
 
@@ -33,13 +34,14 @@ constexpr const char* kDecodeAll = R"(
   })
 )";
 
-// In a bounding box of any shape: whole numbers would hide in which order the diagonal's squares are added.
+// In a bounding box of sides of all lengths: those of a cube would hide in which order the diagonal's squares are
+// added.
 Bytes synthetic_stream(const std::string& coder, unsigned seed, std::uint32_t scale, double step) {
   auto synthetic = test::synthetic_maps(seed, scale);
   test::Random32 random(seed);
-  std::uniform_real_distribution<double> length(0.3, 3);
-  synthetic.frame.box.maximum =
-      synthetic.frame.box.minimum + Eigen::Vector3d(length(random), length(random), length(random));
+  std::uniform_real_distribution<double> octaves(-14, 2);
+  for (double& side : synthetic.frame.box.maximum) side = std::exp2(octaves(random));
+  synthetic.frame.box.minimum = -synthetic.frame.box.maximum;
   synthetic.frame = stream_frame(synthetic.frame.box, synthetic.frame.samples_per_diagonal);
   synthetic.maps.diagonal = synthetic.frame.box.diagonal();
   synthetic.maps.spacing = synthetic.frame.spacing();
@@ -83,7 +85,7 @@ void expect_same(const DecodedStream& expected, const json& found) {
     const BasePlane& plane = patch.plane;
     for (const auto& vector : {plane.origin, plane.axis_u, plane.axis_v, plane.normal})
       for (const double x : vector)
-        EXPECT_NEAR(other["plane"][number++].get<double>(), x, 1e-14 * header.frame.box.diagonal());
+        EXPECT_NEAR(other["plane"][number++].get<double>(), x, 1e-14 * std::max(1.0, header.frame.box.diagonal()));
   }
 }
 
