@@ -1,6 +1,7 @@
 // The page's decoder against libemap/coding, in the browser: masks and elevations are the same to the last bit.
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <random>
 
@@ -47,6 +48,11 @@ Bytes synthetic_stream(const std::string& coder, unsigned seed, std::uint32_t sc
   synthetic.maps.spacing = synthetic.frame.spacing();
   return StreamWriter(*find_elevation_coder(coder), synthetic.frame, synthetic.planes, synthetic.maps, false)
       .write(step);
+}
+
+std::uint32_t damaged_streams() {
+  const char* wanted = std::getenv("EMAP_DAMAGED_STREAMS");
+  return wanted ? static_cast<std::uint32_t>(std::atoi(wanted)) : 60;
 }
 
 template <class Number>
@@ -105,14 +111,20 @@ TEST_P(DecoderTest, DecodesEveryBitAlike) {
 }
 
 // Where the program refuses a damaged stream, so does the page; where it can't know, both decode the same.
+// EMAP_DAMAGED_STREAMS says how many are tried (default 60).
 TEST_P(DecoderTest, TakesDamagedStreamsAlike) {
   const Bytes whole = synthetic_stream(GetParam(), 1, 1, 0.003);
   test::Random32 random(5);
   std::vector<Bytes> streams;
-  for (std::uint32_t i = 0; i < 60; ++i) {
+  for (std::uint32_t i = 0; i < damaged_streams(); ++i) {
     Bytes changed = whole;
     changed[random() % (i % 2 ? changed.size() : 90)] ^= static_cast<std::uint8_t>(1U << random() % 8);
     if (i % 3 == 0) changed.resize(random() % changed.size());
+    if (i % 4 == 0) {  // noise behind a good header
+      changed.assign(whole.begin(), whole.begin() + 38);
+      for (std::uint32_t count = random() % 3000; count > 0; --count)
+        changed.push_back(static_cast<std::uint8_t>(random()));
+    }
     if (i % 5 != 0 && changed.size() > 40) set_stream_check(changed);
     streams.push_back(changed);
   }
@@ -129,7 +141,7 @@ TEST_P(DecoderTest, TakesDamagedStreamsAlike) {
     ASSERT_TRUE(found[i].contains("error")) << expected.error().message;
     EXPECT_TRUE(found[i]["expected"].get<bool>()) << found[i]["error"];
   }
-  EXPECT_GT(refused, 20U);
+  EXPECT_GT(refused, streams.size() / 3);
   EXPECT_LT(refused, streams.size());
 }
 
