@@ -2,6 +2,7 @@
 
 // Pages opened in the browser, for the tests of this folder.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -13,6 +14,7 @@
 #include "libemap/coding/stream.h"
 #include "libemap/page/page.h"
 #include "tests/support/browser.h"
+#include "tests/support/drawn_mesh.h"
 
 namespace emap::test {
 
@@ -55,5 +57,27 @@ class PageTest : public testing::Test {
   std::filesystem::path folder_ =
       std::filesystem::path(testing::TempDir()) / ("emap_page_" + std::to_string(::getpid()));
 };
+
+// Red, green, blue of every pixel as numbers from 0 to 1, row by row from the top.
+inline std::vector<Eigen::Vector3d> pixels_of(Browser& browser, const View& view) {
+  const nlohmann::json drawn = browser.evaluate(fmt::format(R"((() => {{ {}
+    page.draw();
+    const gl = page.renderer.gl, width = gl.drawingBufferWidth, height = gl.drawingBufferHeight;
+    const pixels = new Uint8Array(4 * width * height);
+    gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    return {{ width, height, pixels: pack(pixels) }};
+  }})())",
+                                                            kPack));
+  EXPECT_EQ(drawn["width"], view.width);
+  EXPECT_EQ(drawn["height"], view.height);
+  const std::vector<std::uint8_t> bytes = bytes_of_base64(drawn["pixels"]);
+  std::vector<Eigen::Vector3d> pixels;
+  for (int row = view.height - 1; row >= 0; --row)
+    for (int column = 0; column < view.width; ++column) {
+      const std::size_t i = 4 * (static_cast<std::size_t>(row) * view.width + column);
+      pixels.emplace_back(bytes[i] / 255.0, bytes[i + 1] / 255.0, bytes[i + 2] / 255.0);
+    }
+  return pixels;
+}
 
 }  // namespace emap::test
