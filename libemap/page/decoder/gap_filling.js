@@ -3,6 +3,7 @@
 // numbers).
 
 const REACH = 2.5, REACH_WITHIN_PATCH = 1.6;  // longest inserted sides, in sample spacings
+const LONGEST_SIDE = 4;  // in spacings, of an edge by which the reach grows
 const SMALL_HOLE_EDGES = 12, SMALL_HOLE_REACH = 4;
 const CANDIDATES_PER_EDGE = 12;
 const SHARPEST_FOLD = -0.7;  // cosine between the normals of neighbouring triangles
@@ -117,7 +118,8 @@ class GapFiller {
   // On steep slopes samples, and gaps, are wider than the spacing.
   reach_of({ from, to }) {
     const length = Math.sqrt(distance_squared(this.at(from), this.at(to)));
-    return (this.within_small_holes ? SMALL_HOLE_REACH : REACH) * Math.max(this.spacing, length / 2);
+    const grown = Math.max(this.spacing, Math.min(length, LONGEST_SIDE * this.spacing) / 2);
+    return (this.within_small_holes ? SMALL_HOLE_REACH : REACH) * grown;
   }
 
   // The best tips for triangles on the free side of the edge into the queue.
