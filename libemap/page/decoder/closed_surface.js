@@ -55,25 +55,34 @@ function sample_position(patch, cell, spacing) {
   return sum_of(in_plane, scaled(patch.elevation[cell], patch.normal));
 }
 
-// Normals of boundary samples from all triangles around them, by area: differences within one map are one-sided there, and
-// show as seams. Calls visit(vertex, normal).
-function visit_boundary_normals(surface, inserted, visit) {
-  const { positions, triangles, boundary } = surface;
-  const sums = new Map(boundary.flatMap(({ from, to }) => [[from, [0, 0, 0]], [to, [0, 0, 0]]]));
-  const at = (vertex) => [positions[3 * vertex], positions[3 * vertex + 1], positions[3 * vertex + 2]];
+// Normals of all vertices from the triangles around them, each weighted by the inverse of the squares of its two sides there
+// (N. Max, "Weights for computing vertex normals from facet normals", 1999); not normalised, three numbers to a vertex.
+// Differences of elevations are one-sided at the rims of maps and show there as seams.
+function sums_of_normals(positions, triangles, inserted) {
+  const sums = new Float64Array(positions.length), side = new Float64Array(9), squared = new Float64Array(3);
   const add = (a, b, c) => {
-    const corners = [a, b, c].filter((vertex) => sums.has(vertex));
-    if (corners.length === 0) return;
-    const normal = cross(difference_of(at(b), at(a)), difference_of(at(c), at(a)));
-    for (const vertex of corners) sums.set(vertex, sum_of(sums.get(vertex), normal));
+    for (let axis = 0; axis < 3; ++axis) {
+      const at_a = positions[3 * a + axis], at_b = positions[3 * b + axis], at_c = positions[3 * c + axis];
+      side[axis] = at_b - at_a;
+      side[3 + axis] = at_c - at_b;
+      side[6 + axis] = at_a - at_c;
+    }
+    for (let i = 0; i < 3; ++i) squared[i] = side[3 * i] ** 2 + side[3 * i + 1] ** 2 + side[3 * i + 2] ** 2;
+    for (let axis = 0; axis < 3; ++axis) {
+      const u = (axis + 1) % 3, v = (axis + 2) % 3;
+      const normal = side[u] * side[3 + v] - side[v] * side[3 + u];
+      sums[3 * a + axis] += normal / (squared[0] * squared[2]);
+      sums[3 * b + axis] += normal / (squared[0] * squared[1]);
+      sums[3 * c + axis] += normal / (squared[1] * squared[2]);
+    }
   };
   for (let i = 0; i < triangles.length; i += 3) add(triangles[i], triangles[i + 1], triangles[i + 2]);
   for (const triangle of inserted) add(...triangle);
-  for (const [vertex, sum] of sums) if (dot(sum, sum) > 0) visit(vertex, normalised(sum));
+  return sums;
 }
 
-// { corners: patch and cell of each vertex, indices: three vertices to a triangle, cells: as the model's, with better
-// normals at the boundaries of patches }
+// { corners: patch and cell of each vertex, indices: three vertices to a triangle, cells: as the model's, with the normals of
+// the closed surface }
 function build_gaps(stream, model) {
   const surface = surface_of(stream, model);
   const triangles = new GapFiller(surface, stream.header.spacing, stream.header.least).fill();
@@ -85,10 +94,11 @@ function build_gaps(stream, model) {
     }
     indices.push(numbers.get(vertex));
   }
-  const cells = model.cells.slice();
-  visit_boundary_normals(surface, triangles, (vertex, normal) => {
+  const cells = model.cells.slice(), sums = sums_of_normals(surface.positions, surface.triangles, triangles);
+  for (let vertex = 0; vertex < model.samples; ++vertex) {
+    const sum = [sums[3 * vertex], sums[3 * vertex + 1], sums[3 * vertex + 2]];
     const cell = model.patches[surface.patch_of_vertex[vertex]].first_cell + surface.cell_of_vertex[vertex];
-    cells.set(packed_normal(normal), 3 * cell + 1);
-  });
+    if (dot(sum, sum) > 0 && Number.isFinite(dot(sum, sum))) cells.set(packed_normal(normalised(sum)), 3 * cell + 1);
+  }
   return { corners: Uint32Array.from(corners), indices: Uint32Array.from(indices), cells };
 }
