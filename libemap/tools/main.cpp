@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   emap::add_decode_command(program, action);
   emap::add_info_command(program, action);
   emap::add_compare_command(program, action);
+  emap::add_page_command(program, action);
   emap::add_partition_command(program, action);
   emap::add_resample_command(program, action);
   try {

@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "libemap/page/page.h"
 #include "libemap/surface/model_file.h"
 #include "libemap/surface/surface_distance.h"
 #include "libemap/tools/commands.h"
+#include "libthin/foundation/file_bytes.h"
 
 namespace emap {
 namespace {
@@ -28,6 +30,7 @@ Ran run(const std::vector<std::string>& words) {
   add_encode_command(program, action);
   add_decode_command(program, action);
   add_info_command(program, action);
+  add_page_command(program, action);
   try {
     program.parse(std::vector<std::string>(words.rbegin(), words.rend()));
   } catch (const CLI::ParseError&) {
@@ -90,6 +93,24 @@ TEST_F(CodingCommandsTest, PointsComeBackAsPointsUnlessAMeshIsAskedFor) {
   EXPECT_FALSE(read_model(path("points.ply"))->is_mesh());
   ASSERT_EQ(run({"decode", path("hill.emap"), path("mesh.ply"), "--mesh"}).code, 0);
   EXPECT_TRUE(read_model(path("mesh.ply"))->is_mesh());
+}
+
+TEST_F(CodingCommandsTest, APageHoldsTheFileAndItsName) {
+  ASSERT_TRUE(write_ply(path("hill.ply"), hill()).ok());
+  ASSERT_EQ(run({"encode", path("hill.ply"), path("hill.emap"), "--psnr", "60", "--quiet"}).code, 0);
+  const auto stream = thin::read_file_bytes(path("hill.emap"));
+  for (const auto& [title, words] :
+       {std::pair<std::string, std::vector<std::string>>("hill", {}), {"A hill", {"--title", "A hill"}}}) {
+    std::vector<std::string> command = {"page", path("hill.emap"), path("hill.html")};
+    command.insert(command.end(), words.begin(), words.end());
+    ASSERT_EQ(run(command).code, 0);
+    const auto page = thin::read_file_bytes(path("hill.html"));
+    EXPECT_EQ(std::string(page->begin(), page->end()), web_page(title, *stream));
+  }
+  // What can't be decoded makes no page.
+  ASSERT_TRUE(thin::write_file_bytes(path("cut.emap"), std::span(*stream).first(stream->size() / 2)).ok());
+  EXPECT_EQ(run({"page", path("cut.emap"), path("cut.html")}).code, 3);
+  EXPECT_FALSE(fs::exists(path("cut.html")));
 }
 
 TEST_F(CodingCommandsTest, WhatCannotBeIsSaid) {
