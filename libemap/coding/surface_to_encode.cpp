@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 
 #include "libemap/elevation/base_plane.h"
@@ -10,6 +9,7 @@
 #include "libemap/elevation/gap_filling.h"
 #include "libemap/elevation/resampling.h"
 #include "libemap/surface/mls_surface.h"
+#include "libemap/surface/point_mesh.h"
 #include "libemap/surface/point_normals.h"
 #include "libemap/surface/surface_samples.h"
 #include "libemap/surface/triangle_tree.h"
@@ -22,31 +22,37 @@ using Eigen::Vector3d;
 using thin::Result;
 using Made = std::unique_ptr<SurfaceToEncode>;
 
-constexpr std::size_t kPointSamples = 20000;  // projections onto MLS surfaces cost more
-constexpr double kPointSpacings = 0.6;        // of the dense mesh that stands for a point set's MLS surface
+constexpr double kCleanShare = 0.97;  // of a point set's points that are used by the mesh through them
 
-// About `count` of the points, evenly through their order.
-std::vector<Vector3d> every(const std::vector<Vector3d>& points, std::size_t count) {
-  const std::size_t stride = std::max<std::size_t>(1, points.size() / count);
-  std::vector<Vector3d> chosen;
-  for (std::size_t i = 0; i < points.size(); i += stride) chosen.push_back(points[i]);
-  return chosen;
-}
-
-double root_mean_square(const std::vector<Vector3d>& points,
-                        const std::function<double(const Vector3d&)>& distance_squared) {
+double root_mean_square_distance(const std::vector<Vector3d>& points, const TriangleTree& tree) {
   if (points.empty()) return std::numeric_limits<double>::infinity();
   std::vector<double> squared(points.size());
   thin::parallel_ranges(points.size(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) squared[i] = distance_squared(points[i]);
+    for (std::size_t i = begin; i < end; ++i) squared[i] = tree.closest(points[i]).distance_squared;
   });
   double sum = 0;
   for (const double value : squared) sum += value;
   return std::sqrt(sum / static_cast<double>(points.size()));
 }
 
-double root_mean_square_distance(const std::vector<Vector3d>& points, const TriangleTree& tree) {
-  return root_mean_square(points, [&](const Vector3d& p) { return tree.closest(p).distance_squared; });
+// Of the points, those that some triangle uses.
+double share_of_points_used(const Mesh& mesh) {
+  std::vector<std::uint8_t> used(mesh.positions.size());
+  for (const auto& triangle : mesh.triangles)
+    for (const std::uint32_t vertex : triangle) used[vertex] = 1;
+  return static_cast<double>(std::count(used.begin(), used.end(), 1)) / static_cast<double>(used.size());
+}
+
+// A mesh through the points as they are. Where many of them find no place in it, they are noisy or several scans of the
+// same surface: then through their projections onto the MLS surface.
+Mesh mesh_standing_for(PointSet& points) {
+  Mesh mesh = mesh_of_points(points);
+  if (share_of_points_used(mesh) >= kCleanShare) return mesh;
+  const MlsSurface surface(points.positions);
+  thin::parallel_ranges(points.positions.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) points.positions[i] = surface.project(points.positions[i]).position;
+  });
+  return mesh_of_points(points);
 }
 
 // A partitioned mesh, and the surface that decoded ones are measured against.
@@ -86,26 +92,13 @@ class PartitionedMesh : public SurfaceToEncode {
   }
 
   double error_of(const ElevationMaps& decoded) const override {
-    return content_.is_points ? error_of_points(sample_points(decoded)) : error_of_mesh(closed_mesh(decoded).mesh);
+    const Mesh mesh = closed_mesh(decoded).mesh;
+    if (mesh.triangles.empty()) return std::numeric_limits<double>::infinity();
+    const double missing = root_mean_square_distance(samples_, TriangleTree(mesh));
+    return std::max(missing, root_mean_square_distance(sample_surface(mesh, samples_.size(), 2), tree_));
   }
 
  private:
-  double error_of_mesh(const Mesh& decoded) const {
-    if (decoded.triangles.empty()) return std::numeric_limits<double>::infinity();
-    const double missing = root_mean_square_distance(samples_, TriangleTree(decoded));
-    return std::max(missing, root_mean_square_distance(sample_surface(decoded, samples_.size(), 2), tree_));
-  }
-
-  // Decoded points are compared as the MLS surface that they stand for.
-  double error_of_points(const PointSet& decoded) const {
-    if (decoded.positions.size() < 3) return std::numeric_limits<double>::infinity();
-    const MlsSurface surface(decoded.positions);
-    const std::vector<Vector3d> samples = every(samples_, kPointSamples);
-    const double missing =
-        root_mean_square(samples, [&](const Vector3d& p) { return (surface.closest(p).position - p).squaredNorm(); });
-    return std::max(missing, root_mean_square_distance(every(decoded.positions, samples_.size()), tree_));
-  }
-
   Content content_;
   std::vector<std::vector<std::uint32_t>> elements_;
   TriangleTree tree_;
@@ -132,27 +125,18 @@ Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const
   if (points.positions.size() < 3)
     return thin::Error{thin::ErrorKind::input, "fewer than three points make no surface"};
   ensure_normals(points);
-  Result<Partition> partition = partition_points(points, options);
+  const BoundingBox box = bounding_box(points.positions);
+  const std::size_t count = points.positions.size();
+  Mesh mesh = mesh_standing_for(points);
+  if (mesh.triangles.empty())
+    return thin::Error{thin::ErrorKind::input, "the points lie on a line or too far apart to make a surface"};
+  Result<Partition> partition = partition_mesh(mesh, options);
   if (!partition) return partition.error();
-  std::vector<BasePlane> planes = base_planes(points, *partition);
-  const double spacing = spacing_for_resolution(points, *partition, planes, kPointSpacings);
-  // From here on the points' surface is a mesh, finer than the points: MLS projections cost too much to be made at
-  // every spacing that is tried.
-  const MlsSurface surface(points.positions);
-  const ElevationMaps maps = resample_points(points, surface, *partition, planes, spacing);
-  const ClosedMesh closed = closed_mesh(maps);
-  PartitionedMesh::Content content;
-  content.mesh = closed.mesh;
-  content.mesh.triangles.resize(closed.mesh.triangles.size() - closed.filling.inserted);
-  const std::vector<std::uint32_t> patch_of_vertex = patches_of_samples(maps);
-  partition->patch_of.clear();
-  for (const auto& triangle : content.mesh.triangles) partition->patch_of.push_back(patch_of_vertex[triangle[0]]);
-  content.partition = std::move(*partition);
-  content.planes = std::move(planes);
-  content.box = bounding_box(points.positions);
-  content.is_points = true;
-  content.point_count = points.positions.size();
-  return Made(std::make_unique<PartitionedMesh>(std::move(content), closed.mesh, samples));
+  std::vector<BasePlane> planes = base_planes(mesh, *partition);
+  const Mesh measured = mesh;
+  return Made(std::make_unique<PartitionedMesh>(
+      PartitionedMesh::Content{std::move(mesh), std::move(*partition), std::move(planes), box, true, count}, measured,
+      samples));
 }
 
 }  // namespace emap

@@ -37,7 +37,8 @@ class SurfaceToEncode {
 constexpr std::size_t kSteeringSamples = 200000;
 
 // samples: on each surface, for error_of(). Errors: as partition_mesh() and partition_points(). Points get normals
-// where they have none; what is sampled and measured of them is a dense mesh of their MLS surface.
+// where they have none; what is cut, sampled and measured of them is a mesh through them (surface/point_mesh.h), or
+// through their projections onto the MLS surface where they are noisy.
 thin::Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(Mesh mesh, const PartitionOptions& options,
                                                               std::size_t samples = kSteeringSamples);
 thin::Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const PartitionOptions& options,
