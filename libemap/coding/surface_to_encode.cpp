@@ -55,69 +55,86 @@ Mesh mesh_standing_for(PointSet& points) {
   return mesh_of_points(points);
 }
 
-// A partitioned mesh, and the surface that decoded ones are measured against.
+// What all partitions of a surface share: its mesh, and what decoded ones are measured by.
+struct MeasuredMesh {
+  MeasuredMesh(Mesh given, const BoundingBox& given_box, bool from_points, std::size_t samples_wanted)
+      : mesh(std::move(given)),
+        box(given_box),
+        is_points(from_points),
+        tree(mesh),
+        samples(sample_surface(mesh, samples_wanted, 1)) {}
+
+  Mesh mesh;
+  BoundingBox box;
+  bool is_points;
+  TriangleTree tree;
+  std::vector<Vector3d> samples;
+};
+
 class PartitionedMesh : public SurfaceToEncode {
  public:
-  struct Content {
-    Mesh mesh;
-    Partition partition;
-    std::vector<BasePlane> planes;
-    BoundingBox box;
-    bool is_points = false;
-    std::size_t point_count = 0;
-  };
+  PartitionedMesh(std::shared_ptr<const MeasuredMesh> measured, Partition partition)
+      : measured_(std::move(measured)),
+        partition_(std::move(partition)),
+        planes_(base_planes(measured_->mesh, partition_)),
+        elements_(partition_.elements_of_patches()) {}
 
-  PartitionedMesh(Content content, const Mesh& measured, std::size_t samples)
-      : content_(std::move(content)),
-        elements_(content_.partition.elements_of_patches()),
-        tree_(measured),
-        samples_(sample_surface(measured, samples, 1)) {}
+  static Result<Made> made(std::shared_ptr<const MeasuredMesh> measured, const PartitionOptions& options) {
+    Result<Partition> partition = partition_mesh(measured->mesh, options);
+    if (!partition) return partition.error();
+    return Made(std::make_unique<PartitionedMesh>(std::move(measured), std::move(*partition)));
+  }
 
-  bool is_points() const override { return content_.is_points; }
-  std::size_t point_count() const override { return content_.point_count; }
-  const BoundingBox& box() const override { return content_.box; }
-  const std::vector<BasePlane>& planes() const override { return content_.planes; }
+  bool is_points() const override { return measured_->is_points; }
+  std::size_t point_count() const override { return measured_->mesh.positions.size(); }
+  const BoundingBox& box() const override { return measured_->box; }
+  const std::vector<BasePlane>& planes() const override { return planes_; }
 
   std::vector<Vector3d> positions_of(std::size_t patch) const override {
     std::vector<Vector3d> positions;
     positions.reserve(3 * elements_[patch].size());
     for (const std::uint32_t triangle : elements_[patch])
-      for (const std::uint32_t vertex : content_.mesh.triangles[triangle])
-        positions.push_back(content_.mesh.positions[vertex]);
+      for (const std::uint32_t vertex : measured_->mesh.triangles[triangle])
+        positions.push_back(measured_->mesh.positions[vertex]);
     return positions;
   }
 
   ElevationMaps resample(std::span<const BasePlane> planes, double spacing) const override {
-    return resample_mesh(content_.mesh, content_.partition, planes, spacing);
+    return resample_mesh(measured_->mesh, partition_, planes, spacing);
   }
 
   double error_of(const ElevationMaps& decoded) const override {
     const Mesh mesh = closed_mesh(decoded).mesh;
     if (mesh.triangles.empty()) return std::numeric_limits<double>::infinity();
-    const double missing = root_mean_square_distance(samples_, TriangleTree(mesh));
-    return std::max(missing, root_mean_square_distance(sample_surface(mesh, samples_.size(), 2), tree_));
+    const std::vector<Vector3d>& samples = measured_->samples;
+    const double missing = root_mean_square_distance(samples, TriangleTree(mesh));
+    return std::max(missing, root_mean_square_distance(sample_surface(mesh, samples.size(), 2), measured_->tree));
   }
 
+  Result<Made> repartitioned(const PartitionOptions& options) const override { return made(measured_, options); }
+
  private:
-  Content content_;
+  std::shared_ptr<const MeasuredMesh> measured_;
+  Partition partition_;
+  std::vector<BasePlane> planes_;
   std::vector<std::vector<std::uint32_t>> elements_;
-  TriangleTree tree_;
-  std::vector<Vector3d> samples_;
 };
+
+Result<Made> partitioned(Mesh mesh, const BoundingBox& box, bool is_points, const PartitionOptions& options,
+                         std::size_t samples) {
+  if (mesh.triangles.empty())
+    return thin::Error{thin::ErrorKind::input, is_points
+                                                   ? "the points lie on a line or too far apart to make a surface"
+                                                   : "the mesh has no triangles to make patches of; read it as points"};
+  return PartitionedMesh::made(std::make_shared<const MeasuredMesh>(std::move(mesh), box, is_points, samples), options);
+}
 
 }  // namespace
 
 Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(Mesh mesh, const PartitionOptions& options,
                                                         std::size_t samples) {
-  Result<Partition> partition = partition_mesh(mesh, options);
-  if (!partition) return partition.error();
-  std::vector<BasePlane> planes = base_planes(mesh, *partition);
   const BoundingBox box = bounding_box(mesh.positions);
-  const std::size_t count = mesh.positions.size();
-  const Mesh measured = mesh;
-  return Made(std::make_unique<PartitionedMesh>(
-      PartitionedMesh::Content{std::move(mesh), std::move(*partition), std::move(planes), box, false, count}, measured,
-      samples));
+  return partitioned(std::move(mesh), box, false, options, samples);
 }
 
 Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const PartitionOptions& options,
@@ -126,17 +143,7 @@ Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const
     return thin::Error{thin::ErrorKind::input, "fewer than three points make no surface"};
   ensure_normals(points);
   const BoundingBox box = bounding_box(points.positions);
-  const std::size_t count = points.positions.size();
-  Mesh mesh = mesh_standing_for(points);
-  if (mesh.triangles.empty())
-    return thin::Error{thin::ErrorKind::input, "the points lie on a line or too far apart to make a surface"};
-  Result<Partition> partition = partition_mesh(mesh, options);
-  if (!partition) return partition.error();
-  std::vector<BasePlane> planes = base_planes(mesh, *partition);
-  const Mesh measured = mesh;
-  return Made(std::make_unique<PartitionedMesh>(
-      PartitionedMesh::Content{std::move(mesh), std::move(*partition), std::move(planes), box, true, count}, measured,
-      samples));
+  return partitioned(mesh_standing_for(points), box, true, options, samples);
 }
 
 }  // namespace emap

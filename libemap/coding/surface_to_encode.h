@@ -1,6 +1,6 @@
 #pragma once
 
-// What an encoder needs of a surface: cut into patches once, sampled over quantised planes at any spacing, and measured
+// What an encoder needs of a surface: cut into patches, sampled over quantised planes at any spacing, and measured
 // against what comes out of the decoder. Meshes and point sets alike.
 
 #include <memory>
@@ -32,6 +32,9 @@ class SurfaceToEncode {
   // E_rms of equation 3.2 between this surface and the decoded one, by samples of both;
   // infinite where nothing was decoded.
   virtual double error_of(const ElevationMaps& decoded) const = 0;
+
+  // The same surface cut otherwise.
+  virtual thin::Result<std::unique_ptr<SurfaceToEncode>> repartitioned(const PartitionOptions& options) const = 0;
 };
 
 constexpr std::size_t kSteeringSamples = 200000;

@@ -113,6 +113,20 @@ TEST(Encoder, SaysWhatCannotBe) {
   EXPECT_NE(too_few.error().message.find("allow more"), std::string::npos);
 }
 
+TEST(Encoder, FewerPatchesWhereThatIsBetter) {
+  const Mesh mesh = test_mesh();
+  const auto surface = mesh_to_encode(mesh, {}, kSamples);
+  EncoderOptions options;
+  options.bits_per_point = 1.5;
+  options.samples_per_diagonal = 60;
+  const auto own = encode_surface(**surface, options);
+  options.may_repartition = true;
+  const auto chosen = encode_surface(**surface, options);
+  ASSERT_TRUE(own.ok() && chosen.ok());
+  EXPECT_GE(chosen->psnr_db, own->psnr_db);
+  EXPECT_NEAR(psnr_of(mesh, chosen->stream), chosen->psnr_db, kSampling_db);
+}
+
 TEST(Encoder, PointsOfASphereGoThereAndBack) {
   PointSet points;
   for (int i = 0; i < 4000; ++i) {
