@@ -30,7 +30,7 @@ struct Arguments {
   std::optional<std::uint32_t> samples_per_diagonal;
   PartitionArguments partition;
   BitDistribution distribution = BitDistribution::surface;
-  bool as_points = false, quiet = false;
+  bool as_points = false, quiet = false, one_partition = false;
   int threads = 0;
 };
 
@@ -42,7 +42,7 @@ thin::Result<Encoded> encoded(const SurfaceToEncode& surface, const Arguments& a
   options.coder = find_elevation_coder(arguments.coder);
   options.distribution = arguments.distribution;
   options.samples_per_diagonal = arguments.samples_per_diagonal;
-  options.may_repartition = arguments.partition.options() == PartitionOptions();
+  options.may_repartition = !arguments.one_partition && arguments.partition.options() == PartitionOptions();
   if (!arguments.quiet) options.progress = [](const std::string& line) { spdlog::info("{}", line); };
   return encode_surface(surface, options);
 }
@@ -114,6 +114,8 @@ void add_encode_command(CLI::App& program, Action& action) {
                    "Samples to the bounding box's diagonal [the encoder's choice]")
       ->check(CLI::Range(16, 20000));
   add_partition_options(*command, arguments->partition);
+  command->add_flag("--one-partition", arguments->one_partition,
+                    "Try no other partitions [where an option says how to cut]");
   command->add_option("--threads", arguments->threads, "Threads at most [all cores]")->check(CLI::NonNegativeNumber);
   command->add_flag("--quiet", arguments->quiet, "No progress on standard error");
   command->callback([arguments, &action] { action = [arguments] { return encode(*arguments); }; });
