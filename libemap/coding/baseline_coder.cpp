@@ -68,11 +68,13 @@ struct MapToWrite {
   std::vector<double> coefficients;
   std::uint32_t plane_count = 0;
   double weight = 1;  // of a squared error in elevation, for the surface
+  double samples = 0;
 };
 
 class BaselineWriter : public ElevationWriter {
  public:
-  explicit BaselineWriter(const ElevationMaps& maps) : finest_step_(finest_step(maps)) {
+  BaselineWriter(const ElevationMaps& maps, BitDistribution distribution)
+      : finest_step_(finest_step(maps)), distribution_(distribution) {
     for (const ElevationPatch& patch : maps.patches) maps_.push_back({empty_planes(patch), patch.elevation});
     thin::parallel_ranges(maps_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) prepare(maps_[i], maps.patches[i], maps.spacing);
@@ -106,7 +108,8 @@ class BaselineWriter : public ElevationWriter {
       all_bits |= map.planes.magnitudes[i];
     }
     map.plane_count = static_cast<std::uint32_t>(std::bit_width(all_bits));
-    map.weight = mean_surface_weight(patch, spacing);
+    if (distribution_ != BitDistribution::image) map.weight = mean_surface_weight(patch, spacing);
+    for (const std::uint8_t supported : patch.mask) map.samples += supported;
   }
 
   // Costs are counted down to the plane below the step; a deeper count serves shallower steps too.
@@ -117,9 +120,26 @@ class BaselineWriter : public ElevationWriter {
     const double lambda = 2 * std::log(2.0) * step * step / 12;
     std::vector<Truncation> truncations(maps_.size());
     for (std::size_t i = 0; i < maps_.size(); ++i) truncations[i] = {maps_[i].plane_count, curves_[i].best(lambda)};
+    if (distribution_ == BitDistribution::even) share_evenly(truncations);
     for (std::size_t i = 0; i < maps_.size(); ++i)
       if (truncations[i].passes == 0) truncations[i].planes = 0;
     return truncations;
+  }
+
+  // The same bits in all, but as many for each sample; a map ends behind the pass nearest to its share.
+  void share_evenly(std::vector<Truncation>& truncations) const {
+    double bits = 0, samples = 0;
+    for (std::size_t i = 0; i < maps_.size(); ++i) {
+      bits += curves_[i].bits[truncations[i].passes];
+      samples += maps_[i].samples;
+    }
+    for (std::size_t i = 0; i < maps_.size(); ++i) {
+      const double share = samples > 0 ? bits * maps_[i].samples / samples : 0;
+      const std::vector<double>& ends = curves_[i].bits;
+      const auto nearest = std::min_element(
+          ends.begin(), ends.end(), [share](double a, double b) { return std::abs(a - share) < std::abs(b - share); });
+      truncations[i].passes = static_cast<std::uint32_t>(nearest - ends.begin());
+    }
   }
 
   void count_passes(int lowest) {
@@ -154,6 +174,7 @@ class BaselineWriter : public ElevationWriter {
   }
 
   double finest_step_;
+  BitDistribution distribution_;
   std::vector<MapToWrite> maps_;
   std::vector<PassCurve> curves_;
   int lowest_counted_ = 0;
@@ -194,8 +215,8 @@ ElevationCoder baseline_coder() {
           "baseline",
           "shape-adaptive 9/7 wavelet, embedded bit planes by set splitting, truncation of each map",
           false,
-          [](const ElevationMaps& maps) -> std::unique_ptr<ElevationWriter> {
-            return std::make_unique<BaselineWriter>(maps);
+          [](const ElevationMaps& maps, BitDistribution distribution) -> std::unique_ptr<ElevationWriter> {
+            return std::make_unique<BaselineWriter>(maps, distribution);
           },
           &read};
 }

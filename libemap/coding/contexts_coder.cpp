@@ -40,11 +40,12 @@ class ContextsWriter : public ElevationWriter {
   explicit ContextsWriter(const ElevationMaps& maps) : maps_(maps) {
     for (const ElevationPatch& patch : maps.patches) quantised_.push_back(empty_map(patch));
     wanted_.resize(quantised_.size());
+    fitted_.resize(quantised_.size());
   }
 
   void write(double step, RangeEncoder& encoder) override {
     thin::parallel_ranges(quantised_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) fit(maps_.patches[i], step, quantised_[i], wanted_[i]);
+      for (std::size_t i = begin; i < end; ++i) fit(maps_.patches[i], step, quantised_[i], wanted_[i], fitted_[i]);
     });
     CoefficientCoding coding;
     for (std::size_t i = 0; i < quantised_.size(); ++i) coding.code(encoder, quantised_[i], &wanted_[i]);
@@ -52,14 +53,15 @@ class ContextsWriter : public ElevationWriter {
 
  private:
   // The coefficients in steps, and what they are when rounded.
-  static void fit(const ElevationPatch& patch, double step, QuantisedMap& map, std::vector<double>& wanted) {
+  static void fit(const ElevationPatch& patch, double step, QuantisedMap& map, std::vector<double>& wanted,
+                  FittedSamples& fitted) {
     std::vector<double> known = patch.elevation;
     for (std::size_t i = 0; i < known.size(); ++i)
       if (!patch.mask[i]) known[i] = std::numeric_limits<double>::quiet_NaN();
     std::vector<double> steps;
     for (const Band& band : map.bands) steps.push_back(step_of(band, step));
     wanted = fit_coefficients(map.columns, map.rows, rectangular_levels(map.columns, map.rows), known, map.support,
-                              map.bands, steps);
+                              map.bands, steps, fitted);
     constexpr double kMost = (1U << kValueBits) - 1;
     for (std::size_t b = 0; b < map.bands.size(); ++b)
       for_band(map.bands[b], map.columns, [&](std::size_t i) {
@@ -71,6 +73,7 @@ class ContextsWriter : public ElevationWriter {
   const ElevationMaps& maps_;
   std::vector<QuantisedMap> quantised_;
   std::vector<std::vector<double>> wanted_;  // before rounding
+  std::vector<FittedSamples> fitted_;
 };
 
 void fill_in(ElevationPatch& patch, const QuantisedMap& map, double step) {
@@ -111,7 +114,7 @@ ElevationCoder contexts_coder() {
           "contexts",
           "13/7 wavelet on rectangles with its finest band left out, mixed contexts",
           true,
-          [](const ElevationMaps& maps) -> std::unique_ptr<ElevationWriter> {
+          [](const ElevationMaps& maps, BitDistribution) -> std::unique_ptr<ElevationWriter> {
             return std::make_unique<ContextsWriter>(maps);
           },
           &read};

@@ -15,12 +15,20 @@
 
 namespace emap {
 
+// How the bits are shared out among the maps (thesis, 4.2.1 and table 4.1), by coders that cut each map's code short.
+enum class BitDistribution {
+  even,    // as many for each sample of every map
+  image,   // where they lessen the squared error of the elevations most
+  surface  // where they lessen the squared distance to the surface most: elevations weighted by the maps' slopes
+};
+
 class ElevationWriter {
  public:
   virtual ~ElevationWriter() = default;
 
   // Writes the elevations of all maps so that they are as good, for their bits, as a uniform quantiser of this step
-  // (model units) would make them. May be called again with another step.
+  // (model units) would make them. May be called again with another step; what it makes of that
+  // one may depend on those before.
   virtual void write(double step, RangeEncoder& encoder) = 0;
 };
 
@@ -31,7 +39,7 @@ struct ElevationCoder {
   bool leaves_finest_band_out;  // then maps may be finer for the same bits
 
   // The maps must outlive the writer.
-  std::unique_ptr<ElevationWriter> (*writer)(const ElevationMaps& maps);
+  std::unique_ptr<ElevationWriter> (*writer)(const ElevationMaps& maps, BitDistribution distribution);
 
   // maps: with planes, sizes and masks; fills in elevations. step: as written, rounded as the header does.
   thin::Result<void> (*read)(RangeDecoder& decoder, double step, ElevationMaps& maps);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "libemap/coding/stream.h"
 #include "libthin/foundation/parallel.h"
@@ -22,6 +23,9 @@ constexpr std::uint32_t kFewestSamples = 16;
 constexpr std::uint32_t kMostSamples = 6000;
 constexpr double kClose = 0.985;             // of a wanted size or error: near enough
 constexpr double kResolutionRatio = 1.2599;  // between resolutions that are tried: the cube root of two
+
+constexpr double kCoarsestError = 1e-3;      // in diagonals, that partitions are made for
+constexpr std::size_t kManyPoints = 200000;  // beyond which only one other partition is tried
 
 // A surface sampled at one resolution, ready to be written.
 struct Resolution {
@@ -40,16 +44,18 @@ struct Trial {
 class Search {
  public:
   Search(const SurfaceToEncode& surface, const EncoderOptions& options)
-      : surface_(surface), options_(options), diagonal_(stream_frame(surface.box(), 1).box.diagonal()) {
+      : surface_(&surface), options_(options), diagonal_(stream_frame(surface.box(), 1).box.diagonal()) {
     if (options.bits_per_point) most_bytes_ = *options.bits_per_point * static_cast<double>(surface.point_count()) / 8;
     if (options.psnr_db) largest_error_ = diagonal_ * std::pow(10.0, -*options.psnr_db / 20);
   }
 
   Result<Encoded> run() {
-    if (options_.samples_per_diagonal) return finished(at(*options_.samples_per_diagonal));
+    Trial best = at(options_.samples_per_diagonal.value_or(first_guess()));
+    if (options_.may_repartition) best = with_best_partition(std::move(best));
+    if (options_.samples_per_diagonal) return finished(std::move(best));
     // Work is bounded by the size of the model, not by the clock: the same model gives the same bytes everywhere.
-    const auto resolutions = static_cast<int>(std::clamp(3e6 / static_cast<double>(surface_.point_count()), 3.0, 10.0));
-    Trial best = at(first_guess());
+    const auto resolutions =
+        static_cast<int>(std::clamp(3e6 / static_cast<double>(surface_->point_count()), 3.0, 10.0));
     for (int climb = 0, tried = 1; tried < resolutions && !best.meets_target && climb < 6; ++climb, ++tried)
       best = better(std::move(best), at(scaled(best.samples_per_diagonal, options_.psnr_db ? 1.6 : 1 / 1.6)));
     if (!best.meets_target) return finished(std::move(best));
@@ -70,11 +76,48 @@ class Search {
     return std::clamp(static_cast<std::uint32_t>(std::lround(samples * ratio)), kFewestSamples, kMostSamples);
   }
 
+  // Of the partitions that suit such errors, the one that does best at this resolution stays.
+  Trial with_best_partition(Trial best) {
+    const double error = std::clamp(options_.psnr_db    ? largest_error_
+                                    : best.meets_target ? best.error
+                                                        : kCoarsestError * diagonal_,
+                                    0.0, kCoarsestError * diagonal_);
+    const std::uint32_t samples = best.samples_per_diagonal;
+    for (const PartitionOptions& partition : partitions_for(error / diagonal_)) {
+      Result<std::unique_ptr<SurfaceToEncode>> other = surface_->repartitioned(partition);
+      if (!other) continue;
+      const SurfaceToEncode* last = std::exchange(surface_, other->get());
+      if (options_.progress) options_.progress(fmt::format("{} patches", surface_->planes().size()));
+      Trial trial = at(samples);
+      if (is_better(trial, best)) {
+        best = std::move(trial);
+        repartitioned_ = std::move(*other);
+      } else {
+        surface_ = last;
+      }
+    }
+    return best;
+  }
+
+  // error: in diagonals. Normals are smoothed more, and what lies nearer than the error counts as one sheet.
+  std::vector<PartitionOptions> partitions_for(double error) const {
+    std::vector<PartitionOptions> partitions;
+    for (const int smoothing_rounds : {8, 20, 60}) {
+      if (partitions.size() == 1 && surface_->point_count() > kManyPoints) break;
+      PartitionOptions partition;
+      partition.smoothing_rounds = smoothing_rounds;
+      partition.fold_tolerance = std::max(partition.fold_tolerance, error);
+      partition.scrap_error = std::max(partition.scrap_error, 0.4 * error);
+      partitions.push_back(partition);
+    }
+    return partitions;
+  }
+
   // A bit or two for each sample of the maps are about right for a rate; for a quality, interpolation errs by a power
   // of the spacing.
   std::uint32_t first_guess() const {
     constexpr double kAreaOfDiagonalSquared = 0.8;  // of usual models
-    const double finer = (options_.coder->leaves_finest_band_out ? 1 : 0.8) * (surface_.is_points() ? 1.3 : 1);
+    const double finer = (options_.coder->leaves_finest_band_out ? 1 : 0.8) * (surface_->is_points() ? 1.3 : 1);
     if (options_.psnr_db) return scaled(1, finer * 520 * std::pow(10.0, (*options_.psnr_db - 80) / 45));
     return scaled(1, finer * 1.25 * std::sqrt(8 * most_bytes_ / kAreaOfDiagonalSquared));
   }
@@ -100,20 +143,20 @@ class Search {
   }
 
   Resolution sampled(std::uint32_t samples_per_diagonal) const {
-    const StreamFrame frame = stream_frame(surface_.box(), samples_per_diagonal);
-    std::vector<CodedPlane> coded(surface_.planes().size());
+    const StreamFrame frame = stream_frame(surface_->box(), samples_per_diagonal);
+    std::vector<CodedPlane> coded(surface_->planes().size());
     std::vector<BasePlane> planes(coded.size());
     thin::parallel_ranges(coded.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        coded[i] = quantise_plane(surface_.planes()[i], surface_.positions_of(i), frame);
+        coded[i] = quantise_plane(surface_->planes()[i], surface_->positions_of(i), frame);
         planes[i] = base_plane_of(coded[i], frame);
       }
     });
-    ElevationMaps maps = surface_.resample(planes, frame.spacing());
+    ElevationMaps maps = surface_->resample(planes, frame.spacing());
     maps.diagonal = frame.box.diagonal();
     drop_empty(coded, maps);
-    return {samples_per_diagonal,
-            StreamWriter(*options_.coder, frame, std::move(coded), std::move(maps), surface_.is_points())};
+    return {samples_per_diagonal, StreamWriter(*options_.coder, frame, std::move(coded), std::move(maps),
+                                               surface_->is_points(), options_.distribution)};
   }
 
   // Patches between whose samples everything falls.
@@ -132,6 +175,11 @@ class Search {
     maps.patches.resize(kept);
   }
 
+  double first_step() const {
+    if (last_step_ > 0) return last_step_;
+    return options_.psnr_db ? 6 * largest_error_ : 7e-4 * diagonal_;
+  }
+
   // The largest stream that fits, or nearly: false position between the logarithms of steps and sizes.
   Trial to_rate(Resolution& resolution) {
     struct Side {
@@ -139,7 +187,7 @@ class Search {
     };
     std::optional<Side> fits, exceeds;
     Trial best;
-    double log_step = std::log(last_step_ > 0 ? last_step_ : diagonal_ * 7e-4);
+    double log_step = std::log(first_step());
     for (int round = 0; round < 9; ++round) {
       std::vector<std::uint8_t> stream = resolution.writer.write(std::exp(log_step));
       const double ratio = static_cast<double>(stream.size()) / most_bytes_;
@@ -165,7 +213,7 @@ class Search {
   // The smallest stream that is good enough, or nearly.
   Trial to_quality(Resolution& resolution) {
     Trial best;
-    double step = last_step_ > 0 ? last_step_ : 6 * largest_error_;
+    double step = first_step();
     double exponent = 1;
     double last_ratio = 0, last_step = 0;
     for (int round = 0; round < 6; ++round) {
@@ -192,7 +240,7 @@ class Search {
 
   double error_of(const std::vector<std::uint8_t>& stream) const {
     const Result<DecodedStream> decoded = read_stream(stream);
-    return decoded ? surface_.error_of(decoded->maps) : std::numeric_limits<double>::infinity();
+    return decoded ? surface_->error_of(decoded->maps) : std::numeric_limits<double>::infinity();
   }
 
   double psnr_db(double error) const { return 20 * std::log10(diagonal_ / error); }
@@ -207,7 +255,7 @@ class Search {
       return Error{ErrorKind::configuration,
                    fmt::format("{} bits per point, {:.0f} bytes, are fewer than planes and masks of {} patches take; "
                                "allow more or a wider aperture",
-                               *options_.bits_per_point, most_bytes_, surface_.planes().size())};
+                               *options_.bits_per_point, most_bytes_, surface_->planes().size())};
     if (!trial.meets_target)
       return Error{ErrorKind::configuration,
                    fmt::format("{} dB were not reached; the best was {:.2f} dB at {} samples to the diagonal; ask for "
@@ -217,7 +265,8 @@ class Search {
     return Encoded{std::move(trial.stream), psnr_db(trial.error), trial.samples_per_diagonal, patches};
   }
 
-  const SurfaceToEncode& surface_;
+  const SurfaceToEncode* surface_;
+  std::unique_ptr<SurfaceToEncode> repartitioned_;  // what surface_ points to, where it is not the one given
   const EncoderOptions& options_;
   double diagonal_;
   double most_bytes_ = 0;

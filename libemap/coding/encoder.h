@@ -1,8 +1,8 @@
 #pragma once
 
 // From a surface to a stream of a wanted size or quality (thesis, 4.2.1). The encoder chooses the resolution of the
-// maps and the quantiser's step; what it steers by is the distance between the surface and what a decoder makes of the
-// stream. The same bytes for any number of threads.
+// maps, the quantiser's step, and among a few partitions; what it steers by is the distance between the surface and
+// what a decoder makes of the stream. The same bytes for any number of threads.
 
 #include <cstdint>
 #include <functional>
@@ -22,8 +22,11 @@ struct EncoderOptions {
   std::optional<double> psnr_db;
 
   const ElevationCoder* coder = &elevation_coders().front();
-  std::optional<std::uint32_t> samples_per_diagonal;  // unset: the encoder's choice
-  std::function<void(const std::string&)> progress;   // a line for people now and then
+  BitDistribution distribution = BitDistribution::surface;  // of the baseline coder
+  std::optional<std::uint32_t> samples_per_diagonal;        // unset: the encoder's choice
+  // Whether other partitions than the surface's own may be tried: fewer patches where errors are large anyway.
+  bool may_repartition = false;
+  std::function<void(const std::string&)> progress;  // a line for people now and then
 };
 
 struct Encoded {

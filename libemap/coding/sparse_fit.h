@@ -1,8 +1,9 @@
 #pragma once
 
 // The coefficients of a rectangle of which only some samples are known: few that are not zero, and right where the
-// samples are known. Iterated thresholding: the unknown samples are what the coefficients so far make of them, and the
-// threshold falls from round to round (I. Daubechies, M. Defrise, C. De Mol, 2004; M. Elad and others, 2005).
+// samples are known. Iterated thresholding: the unknown samples are what the coefficients so far make of them, carried
+// on a little beyond, and the threshold falls from round to round (I. Daubechies, M. Defrise, C. De Mol, 2004; A. Beck,
+// M. Teboulle, 2009).
 
 #include <cstdint>
 #include <vector>
@@ -14,14 +15,20 @@ namespace emap {
 struct FitOptions {
   int rounds = 20;
   double first_threshold = 50;  // in steps, of the first round
-  double last_threshold = 0.7;  // in steps
+  int further_rounds = 10;      // of a fit that begins where another one ended
+  double further_threshold = 3;
+  double last_threshold = 0.5;
+  double momentum = 0.6;  // of the unknown samples: share of their last change that is added to the next
 };
+
+// Where a fit ended, for the next one of the same samples with other steps; empty before the first.
+using FittedSamples = std::vector<double>;
 
 // samples: rows x columns, not a number where unknown. support: the coefficients that may differ from 0 (the layout of
 // wavelet_bands()); steps: the quantiser's step of each band. Where nothing is known, all are 0.
 std::vector<double> fit_coefficients(std::uint32_t columns, std::uint32_t rows, std::uint32_t levels,
                                      const std::vector<double>& samples, const std::vector<std::uint8_t>& support,
                                      const std::vector<Band>& bands, const std::vector<double>& steps,
-                                     const FitOptions& options = {});
+                                     FittedSamples& fitted, const FitOptions& options = {});
 
 }  // namespace emap

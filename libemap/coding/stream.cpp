@@ -207,7 +207,7 @@ std::uint64_t most_samples_spanned(std::uint64_t stream_bytes) {
 }
 
 StreamWriter::StreamWriter(const ElevationCoder& coder, const StreamFrame& frame, std::vector<CodedPlane> planes,
-                           ElevationMaps maps, bool from_points)
+                           ElevationMaps maps, bool from_points, BitDistribution distribution)
     : coder_(coder), planes_(std::move(planes)), maps_(std::move(maps)) {
   assert(planes_.size() == maps_.patches.size());
   header_.coder = coder.number;
@@ -218,7 +218,7 @@ StreamWriter::StreamWriter(const ElevationCoder& coder, const StreamFrame& frame
     planes_[i].columns = maps_.patches[i].columns;
     planes_[i].rows = maps_.patches[i].rows;
   }
-  elevations_ = coder.writer(maps_);
+  elevations_ = coder.writer(maps_, distribution);
 }
 
 std::vector<std::uint8_t> StreamWriter::write(double step) {

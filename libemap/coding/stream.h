@@ -52,7 +52,7 @@ class StreamWriter {
   // planes: those over which `maps` were sampled; their columns and rows are set here from the maps.
   // REQUIRES: one plane for each map, the frame's spacing for all maps
   StreamWriter(const ElevationCoder& coder, const StreamFrame& frame, std::vector<CodedPlane> planes,
-               ElevationMaps maps, bool from_points);
+               ElevationMaps maps, bool from_points, BitDistribution distribution = BitDistribution::surface);
   StreamWriter(const StreamWriter&) = delete;
 
   std::vector<std::uint8_t> write(double step);

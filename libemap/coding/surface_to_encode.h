@@ -1,6 +1,6 @@
 #pragma once
 
-// What an encoder needs of a surface: cut into patches once, sampled over quantised planes at any spacing, and measured
+// What an encoder needs of a surface: cut into patches, sampled over quantised planes at any spacing, and measured
 // against what comes out of the decoder. Meshes and point sets alike.
 
 #include <memory>
@@ -32,12 +32,16 @@ class SurfaceToEncode {
   // E_rms of equation 3.2 between this surface and the decoded one, by samples of both;
   // infinite where nothing was decoded.
   virtual double error_of(const ElevationMaps& decoded) const = 0;
+
+  // The same surface cut otherwise.
+  virtual thin::Result<std::unique_ptr<SurfaceToEncode>> repartitioned(const PartitionOptions& options) const = 0;
 };
 
 constexpr std::size_t kSteeringSamples = 200000;
 
 // samples: on each surface, for error_of(). Errors: as partition_mesh() and partition_points(). Points get normals
-// where they have none; what is sampled and measured of them is a dense mesh of their MLS surface.
+// where they have none; what is cut, sampled and measured of them is a mesh through them (surface/point_mesh.h), or
+// through their projections onto the MLS surface where they are noisy.
 thin::Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(Mesh mesh, const PartitionOptions& options,
                                                               std::size_t samples = kSteeringSamples);
 thin::Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const PartitionOptions& options,

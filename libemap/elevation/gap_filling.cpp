@@ -18,6 +18,7 @@ namespace {
 using Triangle = std::array<std::uint32_t, 3>;
 
 constexpr std::size_t kCandidatesPerEdge = 12;
+constexpr double kLongestSide = 4;      // in spacings, of an edge by which the reach grows
 constexpr double kSharpestFold = -0.7;  // cosine between the normals of neighbouring triangles
 constexpr double kLeastHeight = 1e-3;   // of a triangle, in lengths of its longest side
 
@@ -107,7 +108,8 @@ class GapFiller {
 
   // On steep slopes samples, and gaps, are wider than the spacing.
   double reach_of(double side) const {
-    return (within_small_holes_ ? options_.small_hole_reach : options_.reach) * std::max(spacing_, side / 2);
+    return (within_small_holes_ ? options_.small_hole_reach : options_.reach) *
+           std::max(spacing_, std::min(side, kLongestSide * spacing_) / 2);
   }
 
   std::pair<Eigen::Vector3d, Eigen::Vector3d> box_of(const Triangle& triangle) const {

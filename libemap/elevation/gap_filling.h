@@ -13,7 +13,8 @@ namespace emap {
 
 struct GapFillingOptions {
   // Inserted sides that join two patches are at most so many sample spacings long, or half sides of the edge that they
-  // start from where that is longer (on steep slopes): wider holes belong to the surface.
+  // start from where that is longer (on steep slopes), which counts as four spacings at most: wider holes belong to the
+  // surface.
   double reach = 2.5;
   // The same for sides within a patch: it has its own triangles wherever it is sampled without a hole.
   double reach_within = 1.6;

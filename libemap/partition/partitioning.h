@@ -27,6 +27,8 @@ struct PartitionOptions {
   int neighbour_count = 5;   // points: k of the neighbour graph
 
   void declare(thin::OptionTable& table);
+
+  bool operator==(const PartitionOptions&) const = default;
 };
 
 // Errors (input): no triangles; no triangle with an area.

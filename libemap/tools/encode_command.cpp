@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,7 +29,8 @@ struct Arguments {
   std::optional<double> bits_per_point, psnr_db;
   std::optional<std::uint32_t> samples_per_diagonal;
   PartitionArguments partition;
-  bool as_points = false, quiet = false;
+  BitDistribution distribution = BitDistribution::surface;
+  bool as_points = false, quiet = false, one_partition = false;
   int threads = 0;
 };
 
@@ -38,7 +40,9 @@ thin::Result<Encoded> encoded(const SurfaceToEncode& surface, const Arguments& a
   options.psnr_db = arguments.psnr_db;
   if (!options.bits_per_point && !options.psnr_db) options.psnr_db = kDefaultPsnr_db;
   options.coder = find_elevation_coder(arguments.coder);
+  options.distribution = arguments.distribution;
   options.samples_per_diagonal = arguments.samples_per_diagonal;
+  options.may_repartition = !arguments.one_partition && arguments.partition.options() == PartitionOptions();
   if (!arguments.quiet) options.progress = [](const std::string& line) { spdlog::info("{}", line); };
   return encode_surface(surface, options);
 }
@@ -99,11 +103,19 @@ void add_encode_command(CLI::App& program, Action& action) {
       ->excludes(rate);
   command->add_flag("--points", arguments->as_points, "Take a mesh's vertices without its triangles");
   command->add_option("--coder", arguments->coder, coder_help())->check(CLI::IsMember(coder_names()));
+  const std::map<std::string, BitDistribution> distributions = {
+      {"even", BitDistribution::even}, {"image", BitDistribution::image}, {"surface", BitDistribution::surface}};
+  command
+      ->add_option("--distribution", arguments->distribution,
+                   "baseline: bits shared out among patches even, image or surface [surface]")
+      ->transform(CLI::CheckedTransformer(distributions));
   command
       ->add_option("--resolution", arguments->samples_per_diagonal,
                    "Samples to the bounding box's diagonal [the encoder's choice]")
       ->check(CLI::Range(16, 20000));
   add_partition_options(*command, arguments->partition);
+  command->add_flag("--one-partition", arguments->one_partition,
+                    "Try no other partitions [where an option says how to cut]");
   command->add_option("--threads", arguments->threads, "Threads at most [all cores]")->check(CLI::NonNegativeNumber);
   command->add_flag("--quiet", arguments->quiet, "No progress on standard error");
   command->callback([arguments, &action] { action = [arguments] { return encode(*arguments); }; });

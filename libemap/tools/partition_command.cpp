@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -17,6 +16,7 @@
 #include "libemap/tools/commands.h"
 #include "libemap/tools/failure.h"
 #include "libemap/tools/partition_options.h"
+#include "libemap/tools/stopwatch.h"
 
 namespace emap {
 namespace {
@@ -84,16 +84,12 @@ int show(const thin::Result<Partition>& partition, const Arguments& arguments, d
   return std::fflush(stdout) == 0 ? 0 : thin::exit_code(thin::ErrorKind::temporary);
 }
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 int partition_as_mesh(const Arguments& arguments) {
   const thin::Result<Mesh> mesh = read_mesh(arguments.input);
   if (!mesh) return fail(mesh.error());
-  const auto start = std::chrono::steady_clock::now();
+  Stopwatch watch;
   const thin::Result<Partition> partition = partition_mesh(*mesh, arguments.partition.options());
-  return show(partition, arguments, seconds_since(start), [&](const std::vector<Colour>& colours) {
+  return show(partition, arguments, watch.lap_seconds(), [&](const std::vector<Colour>& colours) {
     return write_ply(arguments.output, *mesh, {.triangle_colours = colours});
   });
 }
@@ -101,10 +97,10 @@ int partition_as_mesh(const Arguments& arguments) {
 int partition_as_points(const Arguments& arguments) {
   thin::Result<PointSet> points = read_points(arguments.input);
   if (!points) return fail(points.error());
-  const auto start = std::chrono::steady_clock::now();
+  Stopwatch watch;
   ensure_normals(*points);
   const thin::Result<Partition> partition = partition_points(*points, arguments.partition.options());
-  return show(partition, arguments, seconds_since(start), [&](const std::vector<Colour>& colours) {
+  return show(partition, arguments, watch.lap_seconds(), [&](const std::vector<Colour>& colours) {
     return write_ply(arguments.output, *points, {.vertex_colours = colours});
   });
 }

@@ -22,6 +22,10 @@ void add_partition_options(CLI::App& command, PartitionArguments& arguments) {
       ->check(CLI::PositiveNumber);
   command.add_option("--fold-tolerance", options.fold_tolerance, "Sheets nearer than so many diagonals are one [1e-4]")
       ->check(CLI::Range(0.0, 1.0));
+  command
+      .add_option("--scrap-error", options.scrap_error,
+                  "RMS error that folds too small for patches may add, diagonals [8e-6]")
+      ->check(CLI::Range(0.0, 1.0));
   command.add_option("--smoothing", options.smoothing_rounds, "Rounds of smoothing of the normals [2]")
       ->check(CLI::Range(0, 100));
   command.add_flag("--lenient", arguments.lenient, "Let patches have several sheets over one place");

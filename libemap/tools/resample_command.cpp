@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -19,6 +18,7 @@
 #include "libemap/tools/commands.h"
 #include "libemap/tools/failure.h"
 #include "libemap/tools/partition_options.h"
+#include "libemap/tools/stopwatch.h"
 
 namespace emap {
 namespace {
@@ -31,18 +31,9 @@ struct ResampleArguments {
   GapFillingOptions filling;
 };
 
-class Stopwatch {
- public:
-  void say(const char* step) {
-    const auto now = std::chrono::steady_clock::now();
-    std::fputs(fmt::format("  {:<12} {:7.2f} s\n", step, std::chrono::duration<double>(now - last_).count()).c_str(),
-               stdout);
-    last_ = now;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
+void say_step(const char* step, Stopwatch& watch) {
+  std::fputs(fmt::format("  {:<12} {:7.2f} s\n", step, watch.lap_seconds()).c_str(), stdout);
+}
 
 int say_maps(const ElevationMaps& maps, std::size_t samples) {
   std::fputs(
@@ -55,21 +46,21 @@ int resample_as_mesh(const ResampleArguments& arguments) {
   Stopwatch watch;
   const thin::Result<Mesh> mesh = read_mesh(arguments.input);
   if (!mesh) return fail(mesh.error());
-  watch.say("read");
+  say_step("read", watch);
   const thin::Result<Partition> partition = partition_mesh(*mesh, arguments.partition.options());
   if (!partition) return fail(partition.error());
-  watch.say("partition");
+  say_step("partition", watch);
   const std::vector<BasePlane> planes = base_planes(*mesh, *partition);
   const double spacing = spacing_for_resolution(*mesh, *partition, planes, arguments.mu);
   ElevationMaps maps = resample_mesh(*mesh, *partition, planes, spacing);
-  watch.say("resample");
+  say_step("resample", watch);
   if (arguments.fit) {
     fit_elevations(resample_mesh(*mesh, *partition, planes, fitting_spacing(spacing)), maps);
-    watch.say("fit");
+    say_step("fit", watch);
   }
   const ClosedMesh closed =
       arguments.open ? ClosedMesh{canonical_mesh(maps), {}} : closed_mesh(maps, arguments.filling);
-  watch.say("mesh");
+  say_step("mesh", watch);
   if (const thin::Result<void> written = write_ply(arguments.output, closed.mesh); !written)
     return fail(written.error());
   if (!arguments.open)
@@ -84,17 +75,17 @@ int resample_as_points(const ResampleArguments& arguments) {
   Stopwatch watch;
   thin::Result<PointSet> points = read_points(arguments.input);
   if (!points) return fail(points.error());
-  watch.say("read");
+  say_step("read", watch);
   ensure_normals(*points);
-  watch.say("normals");
+  say_step("normals", watch);
   const thin::Result<Partition> partition = partition_points(*points, arguments.partition.options());
   if (!partition) return fail(partition.error());
-  watch.say("partition");
+  say_step("partition", watch);
   const std::vector<BasePlane> planes = base_planes(*points, *partition);
   const double spacing = spacing_for_resolution(*points, *partition, planes, arguments.mu);
   const MlsSurface surface(points->positions);
   const ElevationMaps maps = resample_points(*points, surface, *partition, planes, spacing);
-  watch.say("resample");
+  say_step("resample", watch);
   const PointSet samples = sample_points(maps);
   if (const thin::Result<void> written = write_ply(arguments.output, samples); !written) return fail(written.error());
   return say_maps(maps, samples.positions.size());

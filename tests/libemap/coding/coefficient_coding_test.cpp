@@ -83,7 +83,8 @@ TEST(SparseFit, KnownSamplesAreKeptAndSmoothOnesNeedFewCoefficients) {
   const double step = 1e-3;
   std::vector<double> steps;
   for (const Band& band : bands) steps.push_back(step / synthesis_norm(band));
-  auto fitted = fit_coefficients(kColumns, kRows, levels, samples, support, bands, steps);
+  FittedSamples whole;
+  auto fitted = fit_coefficients(kColumns, kRows, levels, samples, support, bands, steps, whole);
   std::vector<double> with_zeros_outside = samples;
   for (double& sample : with_zeros_outside)
     if (std::isnan(sample)) sample = 0;
@@ -97,6 +98,9 @@ TEST(SparseFit, KnownSamplesAreKeptAndSmoothOnesNeedFewCoefficients) {
     return large;
   };
   EXPECT_LT(count_large(fitted), count_large(with_zeros_outside) / 2);
+  // Going on from there with the same steps, no more are needed.
+  EXPECT_LE(count_large(fit_coefficients(kColumns, kRows, levels, samples, support, bands, steps, whole)),
+            count_large(fitted));
   rectangular_synthesis(kColumns, kRows, levels, fitted);
   for (std::size_t i = 0; i < mask.size(); ++i) EXPECT_TRUE(!mask[i] || std::abs(fitted[i] - samples[i]) < 1e-9);
 }

@@ -7,6 +7,8 @@
 #include "libemap/coding/stream.h"
 #include "libemap/elevation/canonical_mesh.h"
 #include "libemap/elevation/gap_filling.h"
+#include "libemap/surface/point_mesh.h"
+#include "libemap/surface/point_normals.h"
 #include "libemap/surface/surface_distance.h"
 #include "libthin/foundation/parallel.h"
 
@@ -111,6 +113,20 @@ TEST(Encoder, SaysWhatCannotBe) {
   EXPECT_NE(too_few.error().message.find("allow more"), std::string::npos);
 }
 
+TEST(Encoder, FewerPatchesWhereThatIsBetter) {
+  const Mesh mesh = test_mesh();
+  const auto surface = mesh_to_encode(mesh, {}, kSamples);
+  EncoderOptions options;
+  options.bits_per_point = 1.5;
+  options.samples_per_diagonal = 60;
+  const auto own = encode_surface(**surface, options);
+  options.may_repartition = true;
+  const auto chosen = encode_surface(**surface, options);
+  ASSERT_TRUE(own.ok() && chosen.ok());
+  EXPECT_GE(chosen->psnr_db, own->psnr_db);
+  EXPECT_NEAR(psnr_of(mesh, chosen->stream), chosen->psnr_db, kSampling_db);
+}
+
 TEST(Encoder, PointsOfASphereGoThereAndBack) {
   PointSet points;
   for (int i = 0; i < 4000; ++i) {
@@ -127,6 +143,20 @@ TEST(Encoder, PointsOfASphereGoThereAndBack) {
   ASSERT_TRUE(decoded.ok());
   EXPECT_TRUE(decoded->header.from_points);
   for (const Eigen::Vector3d& p : sample_points(decoded->maps).positions) EXPECT_NEAR(p.norm(), 1, 0.04);
+}
+
+TEST(Encoder, PointsDecodeToAMeshWithoutHoles) {
+  PointSet points{test_mesh().positions, {}};
+  ensure_normals(points);
+  const auto surface = points_to_encode(points, {}, kSamples);
+  ASSERT_TRUE(surface.ok()) << surface.error().message;
+  EncoderOptions options;
+  options.bits_per_point = 8;
+  const auto encoded = encode_surface(**surface, options);
+  ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+  EXPECT_NEAR(psnr_of(mesh_of_points(points), encoded->stream), encoded->psnr_db, kSampling_db);
+  const ClosedMesh closed = closed_mesh(read_stream(encoded->stream)->maps);
+  EXPECT_LT(closed.filling.edges_left, closed.mesh.triangles.size() / 1000);
 }
 
 TEST(Encoder, DegenerateInputIsAnErrorOrAResult) {
@@ -147,6 +177,28 @@ TEST(Encoder, DegenerateInputIsAnErrorOrAResult) {
   try_to_encode({{{0, 0, 0}, {1000, 0, 0}, {1000, 0.001, 0}}, {{0, 1, 2}}});
   try_to_encode({{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}, {{0, 1, 2}}});
   try_to_encode({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0.3}, {0, 0.2, 1}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}});
+}
+
+TEST(Encoder, DegeneratePointsAreAnErrorOrAResult) {
+  const auto try_to_encode = [](std::vector<Eigen::Vector3d> positions) {
+    const auto surface = points_to_encode({std::move(positions), {}}, {}, kSamples);
+    if (!surface) {
+      EXPECT_FALSE(surface.error().message.empty());
+      return;
+    }
+    EncoderOptions options;
+    options.psnr_db = 50;
+    const auto encoded = encode_surface(**surface, options);
+    EXPECT_TRUE(encoded ? read_stream(encoded->stream).ok() : !encoded.error().message.empty());
+  };
+  try_to_encode({});
+  try_to_encode({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+  try_to_encode({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
+  try_to_encode(std::vector<Eigen::Vector3d>(30, {1, 1, 1}));
+  std::vector<Eigen::Vector3d> lattice;
+  for (int i = 0; i < 400; ++i) lattice.emplace_back(i % 20, i / 20, 0);
+  for (int i = 0; i < 400; ++i) lattice.push_back(lattice[static_cast<std::size_t>(i)]);
+  try_to_encode(lattice);
 }
 
 }  // namespace

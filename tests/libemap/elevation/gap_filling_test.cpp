@@ -93,6 +93,14 @@ TEST(GapFilling, OfNothingIsNothing) {
   EXPECT_EQ(fill_gaps(1, {}, triangle).edges_left, 3U);
 }
 
+TEST(GapFilling, LongEdgesBridgeNoWideHoles) {
+  Mesh mesh{{{0, 0, 0}, {20, 0, 0}, {10, -5, 0}, {0, 9, 0}, {20, 9, 0}, {10, 14, 0}}, {{1, 0, 2}, {3, 4, 5}}};
+  EXPECT_EQ(fill_gaps(1, {}, mesh).inserted, 0U);
+  for (Eigen::Vector3d& position : mesh.positions)
+    position = Eigen::Vector3d(0.2 * position.x(), 0.3 * position.y(), 0);
+  EXPECT_GT(fill_gaps(1, {}, mesh).inserted, 0U);
+}
+
 TEST(TrianglesCross, TellsTouchingFromCrossing) {
   const std::vector<Eigen::Vector3d> p = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0},     {0.5, 0.5, -1}, {0.5, 0.5, 1},
                                           {3, 3, 0}, {2, 2, 0}, {0.4, 0.4, 0}, {0, 0, 1},      {-1, -1, 0}};

@@ -1,0 +1,121 @@
+#include "libemap/surface/point_mesh.h"
+
+#include <CGAL/Advancing_front_surface_reconstruction.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <iterator>
+#include <numeric>
+
+#include "libemap/surface/boundary_edges.h"
+#include "libemap/surface/point_neighbours.h"
+
+namespace emap {
+namespace {
+
+using DelaunayPoint = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
+using Triangle = std::array<std::uint32_t, 3>;
+
+constexpr std::size_t kSpacingNeighbours = 8;
+constexpr double kScatter = 0.02;  // in spacings
+
+// In [-0.5, 0.5), by the coordinate's bits and the axis.
+double scatter(const Eigen::Vector3d& position, std::uint64_t axis) {
+  std::uint64_t hash = axis + 1;
+  for (const double x : position) {
+    hash = (hash ^ std::bit_cast<std::uint64_t>(x)) * 0x9E3779B97F4A7C15ULL;
+    hash ^= hash >> 32;
+  }
+  return static_cast<double>(hash >> 11) * 0x1p-53 - 0.5;
+}
+
+// Points of lattices and spheres lie on common spheres, between which a Delaunay triangulation has no choice; scattered
+// a little they don't. The same for the same position.
+DelaunayPoint scattered(const Eigen::Vector3d& position, double spacing) {
+  const double size = kScatter * spacing;
+  return {position.x() + size * scatter(position, 0), position.y() + size * scatter(position, 1),
+          position.z() + size * scatter(position, 2)};
+}
+
+std::vector<Triangle> advancing_front(const std::vector<Eigen::Vector3d>& positions,
+                                      const std::vector<double>& spacings) {
+  std::vector<DelaunayPoint> points;
+  points.reserve(positions.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) points.push_back(scattered(positions[i], spacings[i]));
+  std::vector<std::array<std::size_t, 3>> found;
+  CGAL::advancing_front_surface_reconstruction(points.begin(), points.end(), std::back_inserter(found));
+  std::vector<Triangle> triangles;
+  triangles.reserve(found.size());
+  for (const auto& [a, b, c] : found)
+    triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c)});
+  return triangles;
+}
+
+// The front goes on over whatever lies between the points; what is wider than the points' spacing is none of theirs.
+void drop_bridges(const std::vector<Eigen::Vector3d>& positions, const std::vector<double>& spacings, double reach,
+                  std::vector<Triangle>& triangles) {
+  const auto is_bridge = [&](const Triangle& triangle) {
+    double spacing = 0, longest = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      spacing = std::max(spacing, spacings[triangle[i]]);
+      longest = std::max(longest, (positions[triangle[i]] - positions[triangle[(i + 1) % 3]]).norm());
+    }
+    return longest > reach * spacing;
+  };
+  std::erase_if(triangles, is_bridge);
+}
+
+std::vector<double> spacings_of(const std::vector<Eigen::Vector3d>& positions) {
+  const PointNeighbours neighbours(positions, tree_of(positions), kSpacingNeighbours);
+  std::vector<double> spacings(positions.size());
+  for (std::uint32_t point = 0; point < spacings.size(); ++point) spacings[point] = neighbours.spacing(point);
+  return spacings;
+}
+
+// Of each triangle, the smallest triangle of the part that it is connected to over edges.
+std::vector<std::uint32_t> connected_parts(const Mesh& mesh) {
+  std::vector<std::uint32_t> part(mesh.triangles.size());
+  std::iota(part.begin(), part.end(), 0U);
+  const auto root = [&](std::uint32_t triangle) {
+    while (part[triangle] != triangle) triangle = part[triangle] = part[part[triangle]];
+    return triangle;
+  };
+  for (const EdgePair& edge : edge_pairs(mesh)) {
+    const std::uint32_t first = root(edge.first_triangle), second = root(edge.second_triangle);
+    part[std::max(first, second)] = std::min(first, second);
+  }
+  for (std::uint32_t triangle = 0; triangle < part.size(); ++triangle) part[triangle] = root(triangle);
+  return part;
+}
+
+// Within a connected part the front's triangles are turned alike.
+void turn_outwards(const std::vector<Eigen::Vector3d>& normals, Mesh& mesh) {
+  const std::vector<std::uint32_t> part = connected_parts(mesh);
+  std::vector<double> agreement(mesh.triangles.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto [a, b, c] = mesh.triangles[i];
+    const Eigen::Vector3d scaled = (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]);
+    agreement[part[i]] += scaled.dot(normals[a] + normals[b] + normals[c]);
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    if (agreement[part[i]] < 0) std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
+}
+
+}  // namespace
+
+Mesh mesh_of_points(const PointSet& points, const PointMeshOptions& options) {
+  assert(points.normals.size() == points.positions.size());
+  Mesh mesh{points.positions, {}};
+  if (points.positions.size() < 3) return mesh;
+  const std::vector<double> spacings = spacings_of(points.positions);
+  // Where all points are at one place there is nothing to triangulate.
+  if (!(*std::max_element(spacings.begin(), spacings.end()) > 0)) return mesh;
+  mesh.triangles = advancing_front(points.positions, spacings);
+  drop_bridges(points.positions, spacings, options.reach, mesh.triangles);
+  turn_outwards(points.normals, mesh);
+  return mesh;
+}
+
+}  // namespace emap
