@@ -15,6 +15,7 @@ void add_decode_command(CLI::App& program, Action& action);
 void add_info_command(CLI::App& program, Action& action);
 void add_compare_command(CLI::App& program, Action& action);
 void add_partition_command(CLI::App& program, Action& action);
+void add_render_command(CLI::App& program, Action& action);
 void add_resample_command(CLI::App& program, Action& action);
 
 }  // namespace emap

@@ -1,0 +1,41 @@
+#pragma once
+
+// The shaders: what is drawn times how it is shaded, put together from parts in GLSL 3.30.
+
+#include <string>
+
+namespace emap {
+
+enum class Shading {
+  lighting,    // a white light at the eye on light grey, per pixel
+  reflection,  // a cube map of coloured faces with grid lines
+  combined,    // the mean of the two
+  split,       // upper left lighting, upper right reflection, lower right combined, lower left patches (figure 5.1)
+  patches,     // a colour for each patch; splats at half their radius, so that each can be seen
+  texture,     // a picture on the model's x and y, lit
+  normals,     // (normal + 1) / 2 in the model's axes, alpha 1; nothing but zeros where nothing is
+};
+
+// Parts that vary.
+enum class Stage {
+  map_mesh,          // tiles of elevation maps as strips
+  seam_mesh,         // triangles between patches
+  plain_mesh,        // positions and normals from vertex buffers
+  map_splats,        // discs, one normal each
+  plain_splats,      // the same from vertex buffers
+  map_interpolated,  // discs whose fragments look up their neighbours (5.2.3)
+  map_visibility,    // depth alone, a little behind the discs
+  plain_visibility,
+  map_accumulation,  // normals weighted by a Gaussian, to be added up
+  plain_accumulation,
+  normalisation,  // the sums to normals, shaded; over the whole picture
+};
+
+struct ShaderSources {
+  std::string vertex, fragment;
+};
+
+// rounds: how often a fragment's place is corrected, of map_interpolated alone; 0 is direct interpolation.
+ShaderSources shader_sources(Stage stage, Shading shading, int rounds = 0);
+
+}  // namespace emap
