@@ -51,6 +51,7 @@ class DrawnMaps : public DrawnSurface {
     glBindVertexArray(nothing_.get());
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, is_mesh ? strips_.get() : splats_.get());
     (*program)->set("spacing", spacing_);
+    (*program)->set("keeps_own_normal", seam_count_ == 0 ? 1 : 0);
     for (const MapTile& tile : tiles_) {
       const std::uint32_t count = is_mesh ? tile.strip_count : tile.splat_count;
       if (count == 0) continue;
@@ -59,7 +60,8 @@ class DrawnMaps : public DrawnSurface {
       glDrawElements(is_mesh ? GL_TRIANGLE_STRIP : GL_POINTS, static_cast<GLsizei>(count), GL_UNSIGNED_SHORT,
                      reinterpret_cast<const void*>(sizeof(std::uint16_t) * first));
     }
-    return is_mesh && seam_count_ > 0 ? draw_seams(shading, view, shaders) : thin::Result<void>();
+    const bool shows_surface = is_mesh || pass == Pass::interpolated;
+    return shows_surface && seam_count_ > 0 ? draw_seams(pass, shading, view, shaders) : thin::Result<void>();
   }
 
  private:
@@ -97,7 +99,7 @@ class DrawnMaps : public DrawnSurface {
     program.set("steepest", steepest * steepest);
   }
 
-  thin::Result<void> draw_seams(Shading shading, const View& view, ShaderSet& shaders) {
+  thin::Result<void> draw_seams(Pass pass, Shading shading, const View& view, ShaderSet& shaders) {
     std::vector<std::array<float, 4>> frames;
     frames.reserve(kTexelsOfFrame * tiles_.size());
     const auto push = [&](const Eigen::Vector4d& texel) {
@@ -112,9 +114,11 @@ class DrawnMaps : public DrawnSurface {
       for (int column = 0; column < 3; ++column) push(eye_from_plane.col(column).homogeneous());
       push(Eigen::Vector4d(tile.first_row, 0, 0, 0));
     }
+    glActiveTexture(GL_TEXTURE0 + kFramesUnit);
     const BufferTexture frames_texture(frames, GL_RGBA32F);
     frames_texture.bind(kFramesUnit);
-    const auto program = shaders.use(Stage::seam_mesh, shading, 0, view);
+    const auto program =
+        shaders.use(pass == Pass::mesh ? Stage::seam_mesh : Stage::seam_between_splats, shading, 0, view);
     if (!program) return program.error();
     (*program)->set("patch_colour", Eigen::Vector3d(0.8, 0.8, 0.8));
     glBindVertexArray(seam_array_.get());

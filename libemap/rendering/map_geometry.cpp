@@ -16,8 +16,12 @@ constexpr std::uint32_t kMostSide = 256;
 // Squares of a tile along a side: what is left of 256 samples after a rim at each end.
 constexpr std::uint32_t kTileSquares = kMostSide - 1 - 2 * kMostRims;
 
+bool has_seams(MapUse use) {
+  return use == MapUse::filled_mesh || use == MapUse::interpolated_splats;
+}
+
 int rims_of(MapUse use) {
-  return use == MapUse::filled_mesh ? 0 : use == MapUse::splats ? 1 : 2;
+  return has_seams(use) ? 0 : use == MapUse::splats ? 1 : 2;
 }
 
 class GeometryWriter {
@@ -32,9 +36,9 @@ class GeometryWriter {
     geometry_.samples = closed.mesh.positions.size();
     geometry_.open_edges = closed.filling.edges_left;
     geometry_.edges = closed.mesh.triangles.size() * 3 / 2;
-    if (use_ == MapUse::filled_mesh) vertex_places_.reserve(closed.mesh.positions.size());
+    if (has_seams(use_)) vertex_places_.reserve(closed.mesh.positions.size());
     for (std::uint32_t patch = 0; patch < patches.size(); ++patch) add_patch(patch, patches[patch]);
-    if (use_ == MapUse::filled_mesh) add_seams(closed);
+    if (has_seams(use_)) add_seams(closed);
     return std::move(geometry_);
   }
 
@@ -57,7 +61,7 @@ class GeometryWriter {
     const std::uint32_t across = tiles_along(map.columns), down = tiles_along(map.rows);
     for (std::uint32_t y = 0; y < down; ++y)
       for (std::uint32_t x = 0; x < across; ++x) add_tile(index, patch, region_of(map, x, across, y, down));
-    if (use_ == MapUse::filled_mesh) note_vertices(map, first_tile, across, down);
+    if (has_seams(use_)) note_vertices(map, first_tile, across, down);
   }
 
   static Region region_of(const ElevationPatch& map, std::uint32_t x, std::uint32_t across, std::uint32_t y,

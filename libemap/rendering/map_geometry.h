@@ -15,10 +15,11 @@
 namespace emap {
 
 enum class MapUse {
-  filled_mesh,          // strips, and triangles between patches where gap filling puts them
-  overlapping_mesh,     // strips over patches grown by two rims
-  splats,               // a disc for each sample and for those of the first rim
-  interpolated_splats,  // the same, with a second rim to interpolate towards
+  filled_mesh,                      // strips, and triangles between patches where gap filling puts them
+  overlapping_mesh,                 // strips over patches grown by two rims
+  splats,                           // a disc for each sample and for those of the first rim
+  interpolated_splats,              // a disc for each sample, interpolated within its map; triangles between patches
+  overlapping_interpolated_splats,  // as splats, with a second rim to interpolate towards
 };
 
 // A rectangle of a patch, at most 256 samples wide and high.

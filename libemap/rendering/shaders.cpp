@@ -202,13 +202,17 @@ std::string shade_function(Shading shading) {
   return "void shade(vec3 n, vec3 d, float distance) {\n  " + body + "\n}\n";
 }
 
-constexpr const char* kMeshFragment = R"(
+std::string mesh_fragment(const std::string& exception) {
+  return fmt::format(R"(
 in vec3 normal;
-void main() {
+void main() {{
+  {}
   vec3 d = ray();
   shade(normalize(normal), d, distance_at(gl_FragCoord.z));
+}}
+)",
+                     exception);
 }
-)";
 
 // Cuts the disc out of its square; leaves where the ray meets it.
 constexpr const char* kDiscCode = R"(
@@ -314,13 +318,15 @@ Cell cell_at(vec2 place) {
 }
 )";
 
-// Where neighbours are missing the splat keeps its own normal, and gives way to those that know better.
+// Where neighbours are missing, triangles close the gap; or, where patches overlap instead, the splat keeps its own
+// normal, and gives way to those that know better.
 std::string interpolated_fragment(Shading shading, int rounds) {
   return fmt::format(R"(
 uniform mat4 grid_from_eye;
 uniform vec3 eye_in_grid;
 uniform mat3 eye_from_plane;
 uniform float behind;
+uniform bool keeps_own_normal;
 void main() {{
   DiscHit hit = hit_disc();
   {}
@@ -334,7 +340,9 @@ void main() {{
     float step = (dot(cell.plane, vec3(place.xy, 1.0)) - place.z) / approach;
     vec3 next = place + step * way;
     vec2 moved = abs(next.xy - start.xy);
-    if (!cell.found || max(moved.x, moved.y) > 3.0) break;
+    if (!cell.found) break;
+    // The ray passes by the surface: from this side it sees no such triangle near the disc.
+    if (approach * facet.w <= 0.0 || max(moved.x, moved.y) > 3.0) discard;
     place = next;
     along += step;
     cell = cell_at(place.xy);
@@ -345,6 +353,8 @@ void main() {{
                           cell.weights.y * normal_of(texelFetch(normals, cell.samples.y).xy) +
                           cell.weights.z * normal_of(texelFetch(normals, cell.samples.z).xy));
     gl_FragDepth = depth_at(hit.inverse_distance / along);
+  }} else if (!keeps_own_normal) {{
+    discard;
   }} else {{
     along = 1.0;
     gl_FragDepth = depth_at(1.0 / (1.0 / hit.inverse_distance + behind));
@@ -361,6 +371,7 @@ std::string vertex_of(Stage stage) {
     case Stage::map_mesh:
       return map + kPositionCode + kMapMeshVertex;
     case Stage::seam_mesh:
+    case Stage::seam_between_splats:
       return map + kPositionCode + kSeamVertex;
     case Stage::plain_mesh:
       return std::string(kNormalCode) + kPlainMeshVertex;
@@ -385,7 +396,9 @@ std::string fragment_of(Stage stage, Shading shading, int rounds) {
     case Stage::map_mesh:
     case Stage::seam_mesh:
     case Stage::plain_mesh:
-      return shade + kMeshFragment;
+      return shade + mesh_fragment("");
+    case Stage::seam_between_splats:  // not where single splats are to be seen
+      return shade + mesh_fragment(shading == Shading::split ? "if (in_patch_quarter()) discard;" : "");
     case Stage::map_splats:
     case Stage::plain_splats:
       return shade + kDiscCode + splat_fragment(shading);

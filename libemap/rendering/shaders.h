@@ -18,13 +18,14 @@ enum class Shading {
 
 // Parts that vary.
 enum class Stage {
-  map_mesh,          // tiles of elevation maps as strips
-  seam_mesh,         // triangles between patches
-  plain_mesh,        // positions and normals from vertex buffers
-  map_splats,        // discs, one normal each
-  plain_splats,      // the same from vertex buffers
-  map_interpolated,  // discs whose fragments look up their neighbours (5.2.3)
-  map_visibility,    // depth alone, a little behind the discs
+  map_mesh,             // tiles of elevation maps as strips
+  seam_mesh,            // triangles between patches
+  seam_between_splats,  // the same where patches are drawn as splats
+  plain_mesh,           // positions and normals from vertex buffers
+  map_splats,           // discs, one normal each
+  plain_splats,         // the same from vertex buffers
+  map_interpolated,     // discs whose fragments look up their neighbours (5.2.3)
+  map_visibility,       // depth alone, a little behind the discs
   plain_visibility,
   map_accumulation,  // normals weighted by a Gaussian, to be added up
   plain_accumulation,

@@ -55,12 +55,8 @@ class StripWriter {
   void add_both(std::size_t a, bool is_falling) {
     const std::size_t top = a, bottom = a + map_.columns;
     const Running wanted = is_falling ? Running::top_bottom : Running::bottom_top;
-    if (running_ == Running::none) {
-      begin_piece(is_falling ? top : bottom);
-      push(is_falling ? bottom : top);
-    } else if (running_ != wanted) {
-      push(is_falling ? top : bottom);
-    }
+    if (running_ == Running::none) begin_piece(is_falling ? top : bottom);
+    if (running_ != wanted) push(is_falling ? bottom : top);
     push(is_falling ? top + 1 : bottom + 1);
     push(is_falling ? bottom + 1 : top + 1);
     running_ = wanted;

@@ -77,7 +77,8 @@ MapUse use_of(const Arguments& arguments) {
     case Mode::mesh:
       return arguments.is_overlapping ? MapUse::overlapping_mesh : MapUse::filled_mesh;
     case Mode::splats_interpolated:
-      return arguments.shading == Shading::patches ? MapUse::splats : MapUse::interpolated_splats;
+      if (arguments.shading == Shading::patches) return MapUse::splats;
+      return arguments.is_overlapping ? MapUse::overlapping_interpolated_splats : MapUse::interpolated_splats;
     default:
       return MapUse::splats;
   }
@@ -266,7 +267,8 @@ void add_render_command(CLI::App& program, Action& action) {
       ->transform(CLI::CheckedTransformer(kBackends))
       ->default_str("auto");
   command->add_flag("--direct", arguments->is_direct, "splats-interpolated without correction of places");
-  command->add_flag("--overlap", arguments->is_overlapping, "mesh: patches overlap instead of having gaps filled");
+  command->add_flag("--overlap", arguments->is_overlapping,
+                    "mesh, splats-interpolated: patches overlap instead of having their gaps filled");
   command->add_option("--level", arguments->level, "Halvings of the maps' resolution; by the view unless given")
       ->check(CLI::Range(0, 12));
   command->add_option("--radius-factor", arguments->radius_factor, "Of splats' radii")
