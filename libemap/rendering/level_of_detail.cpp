@@ -50,6 +50,11 @@ ElevationMaps coarser_maps(const ElevationMaps& maps, int level) {
   return coarser;
 }
 
+GapFillingOptions filling_at_level(int level) {
+  if (level == 0) return {};
+  return {.reach = 4, .reach_within = 2, .small_hole_edges = 40, .small_hole_reach = 8};
+}
+
 int level_for_view(double spacing_diagonals, const Camera& camera, int picture_height, double pixels) {
   const double half_angle = camera.field_of_view_degrees * std::numbers::pi / 360;
   const double pixels_of_diagonal = picture_height / (2 * std::tan(half_angle)) / depth_range(camera).nearest;

@@ -29,8 +29,8 @@ class GeometryWriter {
   GeometryWriter(const ElevationMaps& maps, const BoundingBox& box, MapUse use)
       : maps_(maps), use_(use), scale_(1 / box.diagonal()), centre_((box.minimum + box.maximum) / 2) {}
 
-  MapGeometry run() {
-    const ClosedMesh closed = closed_mesh(maps_);
+  MapGeometry run(const GapFillingOptions& filling) {
+    const ClosedMesh closed = closed_mesh(maps_, filling);
     const std::vector<DressedPatch> patches = dressed_patches(maps_, closed.mesh, rims_of(use_));
     geometry_.spacing = maps_.spacing * scale_;
     geometry_.samples = closed.mesh.positions.size();
@@ -209,8 +209,9 @@ std::size_t MapGeometry::bytes() const {
          2 * (strips.size() + splats.size()) + 4 * seam_vertices.size() + seam_index_bytes * seam_triangles.size();
 }
 
-MapGeometry map_geometry(const ElevationMaps& maps, const BoundingBox& box, MapUse use) {
-  return GeometryWriter(maps, box, use).run();
+MapGeometry map_geometry(const ElevationMaps& maps, const BoundingBox& box, MapUse use,
+                         const GapFillingOptions& filling) {
+  return GeometryWriter(maps, box, use).run(filling);
 }
 
 }  // namespace emap

@@ -66,6 +66,7 @@ constexpr std::uint16_t place_in_grid(std::uint32_t row, std::uint32_t column) {
 }
 
 // box: of the model, centred and scaled by it. REQUIRES: fewer than 65,536 tiles come of it
-MapGeometry map_geometry(const ElevationMaps& maps, const BoundingBox& box, MapUse use);
+MapGeometry map_geometry(const ElevationMaps& maps, const BoundingBox& box, MapUse use,
+                         const GapFillingOptions& filling = {});
 
 }  // namespace emap

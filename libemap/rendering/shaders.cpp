@@ -277,16 +277,16 @@ void main() {
 }
 )";
 
-// The triangle of three samples around a place over the plane, its plane, and the samples' weights there. Diagonals and
-// the steepest slope are those of the canonical mesh. kind: 0 nothing there, 1 a triangle.
+// The triangle of three samples that is `inside` over the plane, its plane, and the samples' weights at `place`.
+// Diagonals and the steepest slope are those of the canonical mesh.
 constexpr const char* kCellCode = R"(
 uniform int row_count;
 uniform float steepest;  // squared, in elevation codes to a sample's step
 struct Cell { bool found; vec3 plane; vec3 weights; ivec3 samples; };
-Cell cell_at(vec2 place) {
+Cell cell_of(vec2 inside, vec2 place) {
   Cell cell;
-  vec2 low = floor(place);
-  vec2 f = place - low;
+  vec2 low = floor(inside);
+  vec2 f = inside - low;
   int row = clamp(int(low.y), 0, row_count - 2), column = int(low.x);
   ivec2 near = texelFetch(rows, first_row + row).xy, far = texelFetch(rows, first_row + row + 1).xy;
   ivec2 first = ivec2(near.y, far.y) & 65535, last = ivec2(near.y, far.y) >> 16;
@@ -306,6 +306,7 @@ Cell cell_at(vec2 place) {
   float gradient_v = with_a_b == falling ? h.w - h.x : h.z - h.y;
   float corner = upper ? h.y + h.w - h.z : h.x;
   cell.plane = vec3(gradient_u, gradient_v, corner - gradient_u * low.x - gradient_v * low.y);
+  f = place - low;
   cell.samples = falling ? ivec3(upper ? c_index : a_index, b_index, d_index)
                          : ivec3(a_index, with_a_b ? b_index : c_index, with_a_b ? c_index : d_index);
   cell.weights = falling ? (upper ? vec3(f.x + f.y - 1.0, 1.0 - f.y, 1.0 - f.x) : vec3(1.0 - f.x - f.y, f.x, f.y))
@@ -314,6 +315,16 @@ Cell cell_at(vec2 place) {
                        : there.x && there.z && (with_a_b ? there.y : there.w);
   cell.found = whole && low.y >= 0.0 && int(low.y) < row_count - 1 &&
                gradient_u * gradient_u + gradient_v * gradient_v <= steepest;
+  return cell;
+}
+// A place up to `slack` steps outside of what is supported gets the triangle beside it, continued. towards: where there
+// is support.
+Cell cell_at(vec2 place, vec2 towards, float slack) {
+  Cell cell = cell_of(place, place);
+  if (!cell.found) {
+    vec2 way = towards - place;
+    cell = cell_of(place + way * min(1.0, slack / max(1e-6, length(way))), place);
+  }
   return cell;
 }
 )";
@@ -334,7 +345,9 @@ void main() {{
   vec3 start = (grid_from_eye * vec4(hit.d / hit.inverse_distance, 1.0)).xyz;
   vec3 way = start - eye_in_grid;
   vec3 place = start;
-  Cell cell = cell_at(place.xy);
+  vec2 middle = (grid_from_eye * vec4(centre.xyz, 1.0)).xy;
+  // Discs and triangles are apart by parallax, which the first look must bear; later ones only what rounding takes.
+  Cell cell = cell_at(place.xy, middle, {} > 0 ? 0.5 : 0.02);
   for (int round = 0; round < {}; ++round) {{
     float approach = way.z - dot(cell.plane.xy, way.xy);
     float step = (dot(cell.plane, vec3(place.xy, 1.0)) - place.z) / approach;
@@ -345,7 +358,7 @@ void main() {{
     if (approach * facet.w <= 0.0 || max(moved.x, moved.y) > 3.0) discard;
     place = next;
     along += step;
-    cell = cell_at(place.xy);
+    cell = cell_at(place.xy, middle, 0.02);
   }}
   vec3 n = facet.xyz;
   if (cell.found) {{
@@ -362,7 +375,7 @@ void main() {{
   shade(normalize(n), hit.d, along / hit.inverse_distance);
 }}
 )",
-                     reduction_of(shading), rounds);
+                     reduction_of(shading), rounds, rounds);
 }
 
 std::string vertex_of(Stage stage) {

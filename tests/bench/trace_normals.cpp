@@ -26,8 +26,10 @@ int main(int argc, char** argv) {
   if (!bytes) return fail(bytes.error());
   const auto decoded = emap::read_stream(*bytes);
   if (!decoded) return fail(decoded.error());
-  const emap::ElevationMaps maps = emap::coarser_maps(decoded->maps, std::atoi(argv[5]));
-  const emap::test::RayCaster caster(emap::closed_mesh(maps).mesh, decoded->header.frame.box);
+  const int level = std::atoi(argv[5]);
+  const emap::ElevationMaps maps = emap::coarser_maps(decoded->maps, level);
+  const emap::Mesh mesh = emap::closed_mesh(maps, emap::filling_at_level(level)).mesh;
+  const emap::test::RayCaster caster(mesh, decoded->header.frame.box);
   const emap::View view(*camera, width, height);
   const auto written = emap::write_png(argv[2], emap::test::normals_picture(caster.trace(view), width, height));
   return written ? 0 : fail(written.error());
