@@ -9,7 +9,7 @@
 namespace emap {
 namespace {
 
-constexpr int kTexelsOfFrame = 8;
+constexpr std::size_t kTexelsOfFrame = 14;  // as the shaders count them
 
 Stage stage_of(Pass pass) {
   switch (pass) {
@@ -19,6 +19,10 @@ Stage stage_of(Pass pass) {
       return Stage::map_splats;
     case Pass::interpolated:
       return Stage::map_interpolated;
+    case Pass::identity:
+      return Stage::map_identity;
+    case Pass::resolve:
+      return Stage::map_resolve;
     case Pass::visibility:
       return Stage::map_visibility;
     case Pass::accumulation:
@@ -45,22 +49,15 @@ class DrawnMaps : public DrawnSurface {
     elevations_.bind(kElevationsUnit);
     normals_.bind(kNormalsUnit);
     rows_.bind(kRowsUnit);
+    const bool shows_surface = pass == Pass::mesh || pass == Pass::interpolated || pass == Pass::resolve;
+    if (shows_surface) update_frames(view);
     const auto program = shaders.use(stage_of(pass), shading, rounds, view);
     if (!program) return program.error();
-    const bool is_mesh = pass == Pass::mesh;
     glBindVertexArray(nothing_.get());
-    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, is_mesh ? strips_.get() : splats_.get());
-    (*program)->set("spacing", spacing_);
-    (*program)->set("keeps_own_normal", seam_count_ == 0 ? 1 : 0);
-    for (const MapTile& tile : tiles_) {
-      const std::uint32_t count = is_mesh ? tile.strip_count : tile.splat_count;
-      if (count == 0) continue;
-      set_tile(**program, tile, pass, view);
-      const std::size_t first = is_mesh ? tile.first_strip : tile.first_splat;
-      glDrawElements(is_mesh ? GL_TRIANGLE_STRIP : GL_POINTS, static_cast<GLsizei>(count), GL_UNSIGNED_SHORT,
-                     reinterpret_cast<const void*>(sizeof(std::uint16_t) * first));
-    }
-    const bool shows_surface = is_mesh || pass == Pass::interpolated;
+    if (pass == Pass::resolve)
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+    else
+      draw_tiles(**program, pass, view);
     return shows_surface && seam_count_ > 0 ? draw_seams(pass, shading, view, shaders) : thin::Result<void>();
   }
 
@@ -80,6 +77,23 @@ class DrawnMaps : public DrawnSurface {
                         std::vector<std::uint16_t>(geometry.seam_triangles.begin(), geometry.seam_triangles.end()));
   }
 
+  void draw_tiles(const GlProgram& program, Pass pass, const View& view) const {
+    const bool is_mesh = pass == Pass::mesh;
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, is_mesh ? strips_.get() : splats_.get());
+    program.set("spacing", spacing_);
+    program.set("keeps_own_normal", seam_count_ == 0 ? 1 : 0);
+    for (std::size_t i = 0; i < tiles_.size(); ++i) {
+      const MapTile& tile = tiles_[i];
+      const std::uint32_t count = is_mesh ? tile.strip_count : tile.splat_count;
+      if (count == 0) continue;
+      set_tile(program, tile, pass, view);
+      if (pass == Pass::identity) program.set("tile", static_cast<int>(i));
+      const std::size_t first = is_mesh ? tile.first_strip : tile.first_splat;
+      glDrawElements(is_mesh ? GL_TRIANGLE_STRIP : GL_POINTS, static_cast<GLsizei>(count), GL_UNSIGNED_SHORT,
+                     reinterpret_cast<const void*>(sizeof(std::uint16_t) * first));
+    }
+  }
+
   static void set_tile(const GlProgram& program, const MapTile& tile, Pass pass, const View& view) {
     const Eigen::Matrix4d eye_from_grid = view.eye_from_model * tile.model_from_grid;
     program.set("first_row", static_cast<int>(tile.first_row));
@@ -88,35 +102,52 @@ class DrawnMaps : public DrawnSurface {
       program.set("clip_from_grid", Eigen::Matrix4d(view.clip_from_eye * eye_from_grid));
     else
       program.set("eye_from_grid", eye_from_grid);
-    if (pass != Pass::visibility && pass != Pass::accumulation) program.set("patch_colour", patch_colour(tile.patch));
+    if (pass != Pass::visibility && pass != Pass::accumulation && pass != Pass::identity)
+      program.set("patch_colour", patch_colour(tile.patch));
     if (pass != Pass::interpolated) return;
     const Eigen::Matrix4d grid_from_eye = eye_from_grid.inverse();
     program.set("grid_from_eye", grid_from_eye);
     program.set("eye_in_grid", Eigen::Vector3d(grid_from_eye.col(3).head<3>()));
-    program.set("row_count", static_cast<int>(tile.row_count));
+    program.set("tile_first_row", static_cast<int>(tile.first_row));
+    program.set("tile_row_count", static_cast<int>(tile.row_count));
+    program.set("tile_steepest", steepest_squared(tile));
+  }
+
+  // The canonical mesh's limit, in elevation codes to a sample's step.
+  static double steepest_squared(const MapTile& tile) {
     const double steepest = std::tan(CanonicalOptions().steepest_degrees * std::numbers::pi / 180) *
                             tile.model_from_grid.col(0).norm() / tile.model_from_grid.col(2).norm();
-    program.set("steepest", steepest * steepest);
+    return steepest * steepest;
+  }
+
+  // What shaders that see all tiles at once read of each.
+  void update_frames(const View& view) {
+    std::vector<std::array<float, 4>> frames;
+    frames.reserve(kTexelsOfFrame * tiles_.size());
+    const auto push = [&](const Eigen::Vector3d& xyz, double w) {
+      frames.push_back({static_cast<float>(xyz.x()), static_cast<float>(xyz.y()), static_cast<float>(xyz.z()),
+                        static_cast<float>(w)});
+    };
+    for (const MapTile& tile : tiles_) {
+      const Eigen::Matrix4d eye_from_grid = view.eye_from_model * tile.model_from_grid;
+      const Eigen::Matrix4d clip_from_grid = view.clip_from_eye * eye_from_grid;
+      const Eigen::Matrix4d grid_from_eye = eye_from_grid.inverse();
+      const Eigen::Matrix3d eye_from_plane = view.model_from_eye.transpose() * tile.model_from_plane;
+      const Eigen::Vector3d colour = patch_colour(tile.patch);
+      for (int column = 0; column < 4; ++column) push(clip_from_grid.col(column).head<3>(), clip_from_grid(3, column));
+      push(eye_from_plane.col(0), tile.first_row);
+      push(eye_from_plane.col(1), tile.row_count);
+      push(eye_from_plane.col(2), steepest_squared(tile));
+      for (int row = 0; row < 3; ++row) push(grid_from_eye.row(row).head<3>().transpose(), grid_from_eye(row, 3));
+      for (int column = 0; column < 3; ++column) push(eye_from_grid.col(column).head<3>(), colour[column]);
+      push(eye_from_grid.col(3).head<3>(), 0);
+    }
+    glActiveTexture(GL_TEXTURE0 + kFramesUnit);
+    frames_ = BufferTexture(frames, GL_RGBA32F);
+    frames_.bind(kFramesUnit);
   }
 
   thin::Result<void> draw_seams(Pass pass, Shading shading, const View& view, ShaderSet& shaders) {
-    std::vector<std::array<float, 4>> frames;
-    frames.reserve(kTexelsOfFrame * tiles_.size());
-    const auto push = [&](const Eigen::Vector4d& texel) {
-      const Eigen::Vector4f single = texel.cast<float>();
-      frames.push_back({single.x(), single.y(), single.z(), single.w()});
-    };
-    for (const MapTile& tile : tiles_) {
-      const Eigen::Matrix4d clip_from_grid =
-          view.clip_from_eye * Eigen::Matrix4d(view.eye_from_model * tile.model_from_grid);
-      const Eigen::Matrix3d eye_from_plane = view.model_from_eye.transpose() * tile.model_from_plane;
-      for (int column = 0; column < 4; ++column) push(clip_from_grid.col(column));
-      for (int column = 0; column < 3; ++column) push(eye_from_plane.col(column).homogeneous());
-      push(Eigen::Vector4d(tile.first_row, 0, 0, 0));
-    }
-    glActiveTexture(GL_TEXTURE0 + kFramesUnit);
-    const BufferTexture frames_texture(frames, GL_RGBA32F);
-    frames_texture.bind(kFramesUnit);
     const auto program =
         shaders.use(pass == Pass::mesh ? Stage::seam_mesh : Stage::seam_between_splats, shading, 0, view);
     if (!program) return program.error();
@@ -129,7 +160,7 @@ class DrawnMaps : public DrawnSurface {
 
   std::vector<MapTile> tiles_;
   double spacing_;
-  BufferTexture elevations_, normals_, rows_;
+  BufferTexture elevations_, normals_, rows_, frames_;
   GlVertexArray nothing_, seam_array_;  // tiles need no vertex attributes
   GlBuffer strips_, splats_, seam_vertices_, seam_triangles_;
   GLsizei seam_count_ = 0;

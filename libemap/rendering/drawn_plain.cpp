@@ -11,6 +11,8 @@ Stage stage_of(Pass pass) {
       return Stage::plain_mesh;
     case Pass::splats:
     case Pass::interpolated:
+    case Pass::identity:
+    case Pass::resolve:
       return Stage::plain_splats;
     case Pass::visibility:
       return Stage::plain_visibility;
@@ -48,7 +50,7 @@ class DrawnPlain : public DrawnSurface {
   }
 
   thin::Result<void> draw(Pass pass, Shading shading, int, const View& view, ShaderSet& shaders) override {
-    assert(pass != Pass::interpolated);
+    assert(pass != Pass::interpolated && pass != Pass::identity && pass != Pass::resolve);
     const auto program = shaders.use(stage_of(pass), shading, 0, view);
     if (!program) return program.error();
     const Eigen::Matrix4d eye_from_grid = view.eye_from_model * model_from_grid_;

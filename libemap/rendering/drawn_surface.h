@@ -14,6 +14,8 @@ enum class Pass {
   mesh,
   splats,        // discs, shaded
   interpolated,  // discs whose fragments look up their neighbours; of maps only
+  identity,      // which disc is nearest; of maps only
+  resolve,       // the interpolation from that, over the whole picture, and seams
   visibility,    // discs' depth alone, a little behind them
   accumulation,  // discs' normals, weighted
 };
@@ -21,7 +23,7 @@ enum class Pass {
 class DrawnSurface {
  public:
   virtual ~DrawnSurface() = default;
-  // rounds: of the correction, for Pass::interpolated. REQUIRES: what the pass draws was loaded
+  // rounds: of the correction, for Pass::interpolated and Pass::resolve. REQUIRES: what the pass draws was loaded
   virtual thin::Result<void> draw(Pass pass, Shading shading, int rounds, const View& view, ShaderSet& shaders) = 0;
 };
 

@@ -109,12 +109,20 @@ Result<void> Renderer::draw(const Camera& camera, const DrawOptions& options) {
   else if (options.mode == Mode::splats || options.shading == Shading::patches)
     drawn = draw(Pass::splats);  // single discs do not blend
   else if (options.mode == Mode::splats_interpolated)
-    drawn = draw(Pass::interpolated);
+    drawn = options.in_one_pass ? draw(Pass::interpolated) : draw_interpolated(options, view);
   else
     drawn = draw_blended(options, view);
   glFinish();
   if (drawn && glGetError() != GL_NO_ERROR) return Error{ErrorKind::internal, "the driver refused to draw"};
   return drawn;
+}
+
+Result<void> Renderer::draw_interpolated(const DrawOptions& options, const View& view) {
+  if (const Result<void> begun = frame_->begin_identities(); !begun) return begun;
+  const Result<void> drawn = surface_->draw(Pass::identity, options.shading, 0, view, *shaders_);
+  if (!drawn) return drawn;
+  frame_->resume_with_identities();
+  return surface_->draw(Pass::resolve, options.shading, options.correction_rounds, view, *shaders_);
 }
 
 Result<void> Renderer::draw_blended(const DrawOptions& options, const View& view) {

@@ -16,7 +16,7 @@ enum class Mode {
   mesh,
   splats,               // discs with a normal each
   splats_blended,       // overlapping discs' normals blended: visibility, accumulation, normalisation
-  splats_interpolated,  // normals interpolated between the samples around each fragment, in one pass
+  splats_interpolated,  // normals interpolated between the samples around each fragment, nothing blended
 };
 
 struct DrawOptions {
@@ -25,6 +25,9 @@ struct DrawOptions {
   // Of splats_interpolated: how often a fragment moves to where its ray meets the plane through the samples around it.
   // 0 is the thesis's direct interpolation, 1 its correct one; a second round finds the triangle beside it.
   int correction_rounds = 2;
+  // Interpolates for every disc's fragments, as the thesis does, instead of once for each pixel from the nearest disc:
+  // no other picture, save where discs meet seams, but much more work where discs are as small as pixels.
+  bool in_one_pass = false;
   double radius_factor = 1;  // of splats' radii
 };
 
@@ -52,6 +55,7 @@ class Renderer {
 
  private:
   Renderer() = default;
+  thin::Result<void> draw_interpolated(const DrawOptions& options, const View& view);
   thin::Result<void> draw_blended(const DrawOptions& options, const View& view);
   thin::Result<void> draw_quarter_of_patches(const View& view);
 

@@ -29,6 +29,7 @@ thin::Result<const GlProgram*> ShaderSet::use(Stage stage, Shading shading, int 
   program.set("picture", kPictureUnit);
   program.set("sums", kSumsUnit);
   program.set("depths", kDepthsUnit);
+  program.set("identities", kIdentitiesUnit);
   program.set("clip_from_eye", view.clip_from_eye);
   program.set("model_from_eye", view.model_from_eye);
   program.set("eye_in_model", view.eye_in_model);

@@ -20,7 +20,8 @@ enum Unit {
   kEnvironmentUnit,
   kPictureUnit,
   kSumsUnit,
-  kDepthsUnit
+  kDepthsUnit,
+  kIdentitiesUnit
 };
 
 class ShaderSet {

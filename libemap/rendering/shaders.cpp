@@ -29,7 +29,6 @@ constexpr const char* kMapCode = R"(
 uniform usamplerBuffer elevations;
 uniform usamplerBuffer normals;
 uniform isamplerBuffer rows;
-uniform int first_row;
 ivec2 place_of(int index) {
   int row = index >> 8;
   return ivec2((index & 255) ^ ((row & 7) << 5), row);
@@ -45,6 +44,7 @@ vec4 position_of(mat4 frame, ivec2 place, float code) {
 )";
 
 constexpr const char* kMapMeshVertex = R"(
+uniform int first_row;
 uniform mat4 clip_from_grid;
 uniform mat3 eye_from_plane;
 out vec3 normal;
@@ -56,21 +56,26 @@ void main() {
 }
 )";
 
-// frames: for each tile the columns of clip_from_grid, those of eye_from_plane, and first_row.
-constexpr const char* kSeamVertex = R"(
+// Everything of a tile by its number (drawn_maps.cpp writes it).
+constexpr const char* kFramesCode = R"(
 uniform samplerBuffer frames;
+const int frame_texels = 14;
+mat3 eye_from_plane_of(int frame) {
+  return mat3(texelFetch(frames, frame + 4).xyz, texelFetch(frames, frame + 5).xyz, texelFetch(frames, frame + 6).xyz);
+}
+)";
+
+constexpr const char* kSeamVertex = R"(
 in uvec2 position;
 out vec3 normal;
 void main() {
-  int tile = 8 * int(position.x);
+  int frame = frame_texels * int(position.x);
   ivec2 place = place_of(int(position.y));
-  int tile_row = int(texelFetch(frames, tile + 7).x);
-  int sample_index = texelFetch(rows, tile_row + place.y).x + place.x;
-  mat3 axes = mat3(texelFetch(frames, tile + 4).xyz, texelFetch(frames, tile + 5).xyz, texelFetch(frames, tile + 6).xyz);
-  normal = axes * normal_of(texelFetch(normals, sample_index).xy);
-  mat4 frame = mat4(texelFetch(frames, tile), texelFetch(frames, tile + 1), texelFetch(frames, tile + 2),
-                    texelFetch(frames, tile + 3));
-  gl_Position = position_of(frame, place, float(texelFetch(elevations, sample_index).x));
+  int sample_index = texelFetch(rows, int(texelFetch(frames, frame + 4).w) + place.y).x + place.x;
+  normal = eye_from_plane_of(frame) * normal_of(texelFetch(normals, sample_index).xy);
+  mat4 clip_from_grid = mat4(texelFetch(frames, frame), texelFetch(frames, frame + 1), texelFetch(frames, frame + 2),
+                             texelFetch(frames, frame + 3));
+  gl_Position = position_of(clip_from_grid, place, float(texelFetch(elevations, sample_index).x));
 }
 )";
 
@@ -115,6 +120,7 @@ void place_splat(vec3 p, vec3 n, float radius) {
 
 // Radii by (5.1).
 constexpr const char* kMapSplatVertex = R"(
+uniform int first_row;
 uniform mat4 eye_from_grid;
 uniform mat3 eye_from_plane;
 uniform float spacing;
@@ -124,6 +130,7 @@ void main() {
   vec3 over_plane = normal_of(texelFetch(normals, sample_index).xy);
   vec3 p = (eye_from_grid * vec4(place, float(texelFetch(elevations, sample_index).x), 1.0)).xyz;
   place_splat(p, eye_from_plane * over_plane, 0.70710678 * spacing / (0.1 + 0.9 * max(over_plane.z, 0.0)));
+  IDENTIFY
 }
 )";
 
@@ -160,8 +167,6 @@ float distance_at(float depth) { return depth_line.y / (depth_line.x - depth); }
 constexpr const char* kShadingCode = R"(
 uniform mat3 model_from_eye;
 uniform vec3 eye_in_model;
-uniform vec2 picture_centre;
-uniform vec3 patch_colour;
 uniform samplerCube environment;
 uniform sampler2D picture;
 out vec4 colour;
@@ -171,6 +176,11 @@ vec3 textured(vec3 d, float distance) {
   vec3 p = model_from_eye * (d * distance) + eye_in_model;
   return texture(picture, vec2(p.x, -p.y) + 0.5).rgb;
 }
+)";
+
+// The lower left quarter of Shading::split.
+constexpr const char* kPictureCentre = R"(
+uniform vec2 picture_centre;
 bool in_patch_quarter() { return gl_FragCoord.x < picture_centre.x && gl_FragCoord.y < picture_centre.y; }
 )";
 
@@ -280,8 +290,8 @@ void main() {
 // The triangle of three samples that is `inside` over the plane, its plane, and the samples' weights at `place`.
 // Diagonals and the steepest slope are those of the canonical mesh.
 constexpr const char* kCellCode = R"(
-uniform int row_count;
-uniform float steepest;  // squared, in elevation codes to a sample's step
+int first_row, row_count;  // of the tile
+float steepest;            // squared, in elevation codes to a sample's step
 struct Cell { bool found; vec3 plane; vec3 weights; ivec3 samples; };
 Cell cell_of(vec2 inside, vec2 place) {
   Cell cell;
@@ -329,8 +339,41 @@ Cell cell_at(vec2 place, vec2 towards, float slack) {
 }
 )";
 
-// Where neighbours are missing, triangles close the gap; or, where patches overlap instead, the splat keeps its own
-// normal, and gives way to those that know better.
+// From where the ray meets a disc to where it meets the triangle of the three samples there, and their normals' mean.
+constexpr const char* kInterpolationCode = R"(
+struct Interpolated { bool found; bool passes; float along; vec3 over_plane; };
+// start: where the ray meets the disc, middle: the disc's centre, eye: the ray's origin, all over the grid. along: of the
+// way from the eye to the disc. facing: negative where the disc is seen from outside. passes: the ray sees no triangle of
+// the surface near the disc from this side.
+Interpolated interpolate(vec3 start, vec2 middle, vec3 eye, float facing, int rounds) {
+  Interpolated result = Interpolated(false, false, 1.0, vec3(0.0));
+  vec3 way = start - eye;
+  vec3 place = start;
+  // Discs and triangles are apart by parallax, which the first look must bear; later ones only what rounding takes.
+  Cell cell = cell_at(place.xy, middle, rounds > 0 ? 0.5 : 0.02);
+  for (int i = 0; i < rounds; ++i) {
+    if (!cell.found) break;
+    float approach = way.z - dot(cell.plane.xy, way.xy);
+    float stride = (dot(cell.plane, vec3(place.xy, 1.0)) - place.z) / approach;
+    place += stride * way;
+    result.along += stride;
+    vec2 moved = abs(place.xy - start.xy);
+    if (approach * facing <= 0.0 || max(moved.x, moved.y) > 3.0) {
+      result.passes = true;
+      break;
+    }
+    cell = cell_at(place.xy, middle, 0.02);
+  }
+  result.found = cell.found && !result.passes;
+  result.over_plane = cell.weights.x * normal_of(texelFetch(normals, cell.samples.x).xy) +
+                      cell.weights.y * normal_of(texelFetch(normals, cell.samples.y).xy) +
+                      cell.weights.z * normal_of(texelFetch(normals, cell.samples.z).xy);
+  return result;
+}
+)";
+
+// In one pass (5.2.3). Where neighbours are missing, triangles close the gap; or, where patches overlap instead, the
+// splat keeps its own normal, and gives way to those that know better.
 std::string interpolated_fragment(Shading shading, int rounds) {
   return fmt::format(R"(
 uniform mat4 grid_from_eye;
@@ -338,44 +381,81 @@ uniform vec3 eye_in_grid;
 uniform mat3 eye_from_plane;
 uniform float behind;
 uniform bool keeps_own_normal;
+uniform int tile_first_row;
+uniform int tile_row_count;
+uniform float tile_steepest;
 void main() {{
   DiscHit hit = hit_disc();
   {}
-  float along = 1.0;  // of the way from the eye to the disc
+  first_row = tile_first_row;
+  row_count = tile_row_count;
+  steepest = tile_steepest;
   vec3 start = (grid_from_eye * vec4(hit.d / hit.inverse_distance, 1.0)).xyz;
-  vec3 way = start - eye_in_grid;
-  vec3 place = start;
   vec2 middle = (grid_from_eye * vec4(centre.xyz, 1.0)).xy;
-  // Discs and triangles are apart by parallax, which the first look must bear; later ones only what rounding takes.
-  Cell cell = cell_at(place.xy, middle, {} > 0 ? 0.5 : 0.02);
-  for (int round = 0; round < {}; ++round) {{
-    float approach = way.z - dot(cell.plane.xy, way.xy);
-    float step = (dot(cell.plane, vec3(place.xy, 1.0)) - place.z) / approach;
-    vec3 next = place + step * way;
-    vec2 moved = abs(next.xy - start.xy);
-    if (!cell.found) break;
-    // The ray passes by the surface: from this side it sees no such triangle near the disc.
-    if (approach * facet.w <= 0.0 || max(moved.x, moved.y) > 3.0) discard;
-    place = next;
-    along += step;
-    cell = cell_at(place.xy, middle, 0.02);
-  }}
-  vec3 n = facet.xyz;
-  if (cell.found) {{
-    n = eye_from_plane * (cell.weights.x * normal_of(texelFetch(normals, cell.samples.x).xy) +
-                          cell.weights.y * normal_of(texelFetch(normals, cell.samples.y).xy) +
-                          cell.weights.z * normal_of(texelFetch(normals, cell.samples.z).xy));
-    gl_FragDepth = depth_at(hit.inverse_distance / along);
-  }} else if (!keeps_own_normal) {{
-    discard;
-  }} else {{
-    along = 1.0;
-    gl_FragDepth = depth_at(1.0 / (1.0 / hit.inverse_distance + behind));
-  }}
-  shade(normalize(n), hit.d, along / hit.inverse_distance);
+  Interpolated at = interpolate(start, middle, eye_in_grid, facet.w, {});
+  if (at.passes || !(at.found || keeps_own_normal)) discard;
+  float distance = at.found ? at.along / hit.inverse_distance : 1.0 / hit.inverse_distance;
+  gl_FragDepth = depth_at(1.0 / (at.found ? distance : distance + behind));
+  shade(normalize(at.found ? eye_from_plane * at.over_plane : facet.xyz), hit.d, distance);
 }}
 )",
-                     reduction_of(shading), rounds, rounds);
+                     reduction_of(shading), rounds);
+}
+
+// Which disc is nearest, by tile and place.
+std::string identity_fragment(Shading shading) {
+  return fmt::format(R"(
+flat in uint identity;
+out uint nearest;
+void main() {{
+  DiscHit hit = hit_disc();
+  {}
+  gl_FragDepth = depth_at(hit.inverse_distance);
+  nearest = identity;
+}}
+)",
+                     reduction_of(shading));
+}
+
+// The interpolation of 5.2.3 once for each pixel, from the disc that is nearest there. Where neighbours are missing the
+// disc's own normal stays, a little behind: triangles that close the gap are drawn over it.
+std::string resolve_fragment(Shading shading, int rounds) {
+  return fmt::format(R"(
+uniform usampler2D identities;
+uniform float behind;
+void main() {{
+  uint identity = texelFetch(identities, ivec2(gl_FragCoord.xy), 0).x;
+  if (identity == 0xffffffffu) discard;
+  int frame = frame_texels * int(identity >> 16);
+  ivec2 place = place_of(int(identity & 65535u));
+  mat3 eye_from_plane = eye_from_plane_of(frame);
+  first_row = int(texelFetch(frames, frame + 4).w);
+  row_count = int(texelFetch(frames, frame + 5).w);
+  steepest = texelFetch(frames, frame + 6).w;
+  vec4 grid_x = texelFetch(frames, frame + 7), grid_y = texelFetch(frames, frame + 8), grid_z = texelFetch(frames, frame + 9);
+  vec4 axis_u = texelFetch(frames, frame + 10), axis_v = texelFetch(frames, frame + 11), axis_n = texelFetch(frames, frame + 12);
+  int sample_index = texelFetch(rows, first_row + place.y).x + place.x;
+  vec3 middle = vec3(place, float(texelFetch(elevations, sample_index).x));
+  vec3 p = axis_u.xyz * middle.x + axis_v.xyz * middle.y + axis_n.xyz * middle.z + texelFetch(frames, frame + 13).xyz;
+  vec3 n = eye_from_plane * normal_of(texelFetch(normals, sample_index).xy);
+  vec3 d = ray();
+  float facing = dot(n, p);
+  float distance = facing / dot(n, d);
+  vec4 hit = vec4(d * distance, 1.0);
+  vec3 start = vec3(dot(grid_x, hit), dot(grid_y, hit), dot(grid_z, hit));
+  Interpolated at = interpolate(start, middle.xy, vec3(grid_x.w, grid_y.w, grid_z.w), facing, {});
+  bool single = {};
+  if (at.passes && !single) discard;
+  if (at.found && !single) {{
+    n = eye_from_plane * at.over_plane;
+    distance *= at.along;
+  }}
+  gl_FragDepth = depth_at(1.0 / (at.found ? distance : distance + behind));
+  patch_colour = vec3(axis_u.w, axis_v.w, axis_n.w);
+  shade(normalize(n), d, distance);
+}}
+)",
+                     rounds, shading == Shading::split ? "in_patch_quarter()" : "false");
 }
 
 std::string vertex_of(Stage stage) {
@@ -385,7 +465,7 @@ std::string vertex_of(Stage stage) {
       return map + kPositionCode + kMapMeshVertex;
     case Stage::seam_mesh:
     case Stage::seam_between_splats:
-      return map + kPositionCode + kSeamVertex;
+      return map + kPositionCode + kFramesCode + kSeamVertex;
     case Stage::plain_mesh:
       return std::string(kNormalCode) + kPlainMeshVertex;
     case Stage::map_splats:
@@ -397,14 +477,18 @@ std::string vertex_of(Stage stage) {
     case Stage::plain_visibility:
     case Stage::plain_accumulation:
       return std::string(kNormalCode) + kSplatVertex + kPlainSplatVertex;
+    case Stage::map_identity:
+      return map + kSplatVertex + "flat out uint identity;\nuniform int tile;\n" + kMapSplatVertex;
     case Stage::normalisation:
+    case Stage::map_resolve:
       return kWholePictureVertex;
   }
   return "";
 }
 
 std::string fragment_of(Stage stage, Shading shading, int rounds) {
-  const std::string shade = std::string(kRayCode) + kShadingCode + shade_function(shading);
+  const std::string colour = stage == Stage::map_resolve ? "vec3 patch_colour;\n" : "uniform vec3 patch_colour;\n";
+  const std::string shade = std::string(kRayCode) + colour + kPictureCentre + kShadingCode + shade_function(shading);
   switch (stage) {
     case Stage::map_mesh:
     case Stage::seam_mesh:
@@ -416,7 +500,13 @@ std::string fragment_of(Stage stage, Shading shading, int rounds) {
     case Stage::plain_splats:
       return shade + kDiscCode + splat_fragment(shading);
     case Stage::map_interpolated:
-      return shade + kNormalCode + kMapCode + kDiscCode + kCellCode + interpolated_fragment(shading, rounds);
+      return shade + kNormalCode + kMapCode + kDiscCode + kCellCode + kInterpolationCode +
+             interpolated_fragment(shading, rounds);
+    case Stage::map_identity:
+      return std::string(kRayCode) + kPictureCentre + kDiscCode + identity_fragment(shading);
+    case Stage::map_resolve:
+      return shade + kNormalCode + kMapCode + kFramesCode + kCellCode + kInterpolationCode +
+             resolve_fragment(shading, rounds);
     case Stage::map_visibility:
     case Stage::plain_visibility:
       return std::string(kRayCode) + kDiscCode + kVisibilityFragment;
@@ -433,7 +523,10 @@ std::string fragment_of(Stage stage, Shading shading, int rounds) {
 
 ShaderSources shader_sources(Stage stage, Shading shading, int rounds) {
   const std::string version = "#version 330 core\n";
-  return {version + vertex_of(stage), version + fragment_of(stage, shading, rounds)};
+  const std::string identify = stage == Stage::map_identity
+                                   ? "#define IDENTIFY identity = uint(tile) << 16 | uint(gl_VertexID);\n"
+                                   : "#define IDENTIFY\n";
+  return {version + identify + vertex_of(stage), version + fragment_of(stage, shading, rounds)};
 }
 
 }  // namespace emap

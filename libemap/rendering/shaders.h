@@ -24,7 +24,9 @@ enum class Stage {
   plain_mesh,           // positions and normals from vertex buffers
   map_splats,           // discs, one normal each
   plain_splats,         // the same from vertex buffers
-  map_interpolated,     // discs whose fragments look up their neighbours (5.2.3)
+  map_identity,         // which disc is nearest, by tile and place
+  map_resolve,          // from that the interpolation of 5.2.3, once for each pixel; over the whole picture
+  map_interpolated,     // the same in one pass: every disc's fragments look up their neighbours
   map_visibility,       // depth alone, a little behind the discs
   plain_visibility,
   map_accumulation,  // normals weighted by a Gaussian, to be added up
@@ -36,7 +38,8 @@ struct ShaderSources {
   std::string vertex, fragment;
 };
 
-// rounds: how often a fragment's place is corrected, of map_interpolated alone; 0 is direct interpolation.
+// rounds: how often a fragment's place is corrected, of map_resolve and
+// map_interpolated; 0 is direct interpolation.
 ShaderSources shader_sources(Stage stage, Shading shading, int rounds = 0);
 
 }  // namespace emap

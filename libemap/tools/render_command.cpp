@@ -34,7 +34,7 @@ struct Arguments {
   Shading shading = Shading::lighting;
   std::string size = "1024x1024", camera = "30,15,2", texture;
   Backend backend = Backend::automatic;
-  bool is_direct = false, is_overlapping = false, as_json = false;
+  bool is_direct = false, is_in_one_pass = false, is_overlapping = false, as_json = false;
   int level = -1;  // by the view
   int turntable = 1;
   double bench_seconds = 0, radius_factor = 1;
@@ -237,7 +237,8 @@ Result<std::string> render(const Arguments& arguments) {
                                                               : load_plain(arguments, **renderer);
   if (!loaded) return loaded.error();
   const double load_seconds = watch.lap_seconds();
-  const DrawOptions options{arguments.mode, arguments.shading, arguments.is_direct ? 0 : 2, arguments.radius_factor};
+  const DrawOptions options{arguments.mode, arguments.shading, arguments.is_direct ? 0 : 2, arguments.is_in_one_pass,
+                            arguments.radius_factor};
   if (const Result<void> drawn = draw_pictures(**renderer, arguments, *camera, options); !drawn) return drawn.error();
   const Result<Bench> measured = bench(**renderer, arguments, *camera, options);
   if (!measured) return measured.error();
@@ -274,6 +275,8 @@ void add_render_command(CLI::App& program, Action& action) {
       ->transform(CLI::CheckedTransformer(kBackends))
       ->default_str("auto");
   command->add_flag("--direct", arguments->is_direct, "splats-interpolated without correction of places");
+  command->add_flag("--one-pass", arguments->is_in_one_pass,
+                    "splats-interpolated for every disc's fragments instead of once for each pixel");
   command->add_flag("--overlap", arguments->is_overlapping,
                     "mesh, splats-interpolated: patches overlap instead of having their gaps filled");
   command->add_option("--level", arguments->level, "Halvings of the maps' resolution; by the view unless given")
