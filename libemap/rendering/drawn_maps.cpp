@@ -55,7 +55,7 @@ class DrawnMaps : public DrawnSurface {
     if (!program) return program.error();
     glBindVertexArray(nothing_.get());
     if (pass == Pass::resolve)
-      glDrawArrays(GL_TRIANGLES, 0, 3);
+      resolve();
     else
       draw_tiles(**program, pass, view);
     return shows_surface && seam_count_ > 0 ? draw_seams(pass, shading, view, shaders) : thin::Result<void>();
@@ -75,6 +75,15 @@ class DrawnMaps : public DrawnSurface {
             ? gl_buffer(GL_ELEMENT_ARRAY_BUFFER, geometry.seam_triangles)
             : gl_buffer(GL_ELEMENT_ARRAY_BUFFER,
                         std::vector<std::uint16_t>(geometry.seam_triangles.begin(), geometry.seam_triangles.end()));
+  }
+
+  // Where a disc is in front of the farthest depth, which it leaves as it is.
+  static void resolve() {
+    glDepthFunc(GL_GREATER);
+    glDepthMask(GL_FALSE);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDepthFunc(GL_LEQUAL);
+    glDepthMask(GL_TRUE);
   }
 
   void draw_tiles(const GlProgram& program, Pass pass, const View& view) const {
@@ -148,8 +157,10 @@ class DrawnMaps : public DrawnSurface {
   }
 
   thin::Result<void> draw_seams(Pass pass, Shading shading, const View& view, ShaderSet& shaders) {
-    const auto program =
-        shaders.use(pass == Pass::mesh ? Stage::seam_mesh : Stage::seam_between_splats, shading, 0, view);
+    const Stage stage = pass == Pass::mesh           ? Stage::seam_mesh
+                        : pass == Pass::interpolated ? Stage::seam_between_splats
+                                                     : Stage::seam_over_discs;
+    const auto program = shaders.use(stage, shading, 0, view);
     if (!program) return program.error();
     (*program)->set("patch_colour", Eigen::Vector3d(0.8, 0.8, 0.8));
     glBindVertexArray(seam_array_.get());

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 
 #include "libemap/rendering/shader_set.h"
 #include "libthin/foundation/memory.h"
@@ -116,16 +115,12 @@ Result<void> Frame::begin_sums() {
 Result<void> Frame::begin_identities() {
   if (!identities_.get()) {
     identities_ = attachment(GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, width_, height_);
-    identity_depth_ = attachment(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, width_, height_);
-    identifying_ = framebuffer(identities_.get(), identity_depth_.get());
+    identifying_ = framebuffer(identities_.get(), depth_.get());
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
       return Error{ErrorKind::configuration,
                    "this driver does not draw whole numbers: interpolated splats need that, or --one-pass"};
   }
   glBindFramebuffer(GL_FRAMEBUFFER, identifying_.get());
-  const std::array<GLuint, 4> none = {0xffffffffU, 0, 0, 0};
-  glClearBufferuiv(GL_COLOR, 0, none.data());
-  glClear(GL_DEPTH_BUFFER_BIT);
   return {};
 }
 

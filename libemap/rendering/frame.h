@@ -20,9 +20,9 @@ class Frame {
   void begin() const;
   // Draws go to the sums, additively, against the depth as it is; cleared first. Made when first asked for.
   thin::Result<void> begin_sums();
-  // Draws go to a picture of numbers with a depth of its own; cleared to the largest number. Made when first asked for.
+  // Draws go to a picture of numbers, with the picture's depth. Made when first asked for.
   thin::Result<void> begin_identities();
-  // Draws go to the picture and its depth again; the numbers can be read as a texture.
+  // Draws go to the picture again; the numbers can be read as a texture.
   void resume_with_identities() const;
   // Draws go to the picture, without looking at depths; sums and depths can be read as textures.
   void begin_resolve() const;
@@ -36,7 +36,7 @@ class Frame {
  private:
   int width_ = 0, height_ = 0;
   bool deep_ = false;
-  GlTexture colour_, depth_, sums_, identities_, identity_depth_;
+  GlTexture colour_, depth_, sums_, identities_;
   GlFramebuffer picture_, summing_, resolving_, identifying_;
 };
 

@@ -76,6 +76,7 @@ void main() {
   mat4 clip_from_grid = mat4(texelFetch(frames, frame), texelFetch(frames, frame + 1), texelFetch(frames, frame + 2),
                              texelFetch(frames, frame + 3));
   gl_Position = position_of(clip_from_grid, place, float(texelFetch(elevations, sample_index).x));
+  MOVE_FORWARD
 }
 )";
 
@@ -145,20 +146,22 @@ void main() {
 }
 )";
 
+// As far away as anything can be without being the ground.
 constexpr const char* kWholePictureVertex = R"(
 void main() {
   vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
-  gl_Position = vec4(corner, 0.0, 1.0);
+  gl_Position = vec4(corner, 0.9999, 1.0);
 }
 )";
 
 // ---- parts of fragment shaders -----------------------------------------------------------------------------------
 
 // Depth in the picture is linear in 1 / (distance along the view).
+constexpr const char* kRayDepth = "uniform vec2 depth_line;\n";
+
 constexpr const char* kRayCode = R"(
 uniform vec2 ray_scale;
 uniform vec2 ray_offset;
-uniform vec2 depth_line;
 vec3 ray() { return vec3(gl_FragCoord.xy * ray_scale + ray_offset, -1.0); }
 float depth_at(float inverse_distance) { return depth_line.x - depth_line.y * inverse_distance; }
 float distance_at(float depth) { return depth_line.y / (depth_line.x - depth); }
@@ -327,15 +330,12 @@ Cell cell_of(vec2 inside, vec2 place) {
                gradient_u * gradient_u + gradient_v * gradient_v <= steepest;
   return cell;
 }
-// A place up to `slack` steps outside of what is supported gets the triangle beside it, continued. towards: where there
-// is support.
+// The triangle that lies `slack` steps from the place towards where there is support, continued to the place: what lies
+// beside the map's edge by no more than that still gets the triangle at the edge, and inside nothing changes, for
+// triangles agree where they meet.
 Cell cell_at(vec2 place, vec2 towards, float slack) {
-  Cell cell = cell_of(place, place);
-  if (!cell.found) {
-    vec2 way = towards - place;
-    cell = cell_of(place + way * min(1.0, slack / max(1e-6, length(way))), place);
-  }
-  return cell;
+  vec2 way = towards - place;
+  return cell_of(place + way * min(1.0, slack / max(1e-6, length(way))), place);
 }
 )";
 
@@ -350,7 +350,7 @@ Interpolated interpolate(vec3 start, vec2 middle, vec3 eye, float facing, int ro
   vec3 way = start - eye;
   vec3 place = start;
   // Discs and triangles are apart by parallax, which the first look must bear; later ones only what rounding takes.
-  Cell cell = cell_at(place.xy, middle, rounds > 0 ? 0.5 : 0.02);
+  Cell cell = cell_at(place.xy, middle, rounds > 0 ? 0.3 : 0.02);
   for (int i = 0; i < rounds; ++i) {
     if (!cell.found) break;
     float approach = way.z - dot(cell.plane.xy, way.xy);
@@ -402,15 +402,18 @@ void main() {{
                      reduction_of(shading), rounds);
 }
 
-// Which disc is nearest, by tile and place.
+// Which disc is nearest, by tile and place. Discs bulge away from the eye towards their rims: of discs at the same
+// depth the one whose centre is nearest is taken.
 std::string identity_fragment(Shading shading) {
   return fmt::format(R"(
+uniform float bulge;
 flat in uint identity;
 out uint nearest;
 void main() {{
   DiscHit hit = hit_disc();
   {}
-  gl_FragDepth = depth_at(hit.inverse_distance);
+  float lift = bulge * hit.squared / centre.w;
+  gl_FragDepth = depth_at(hit.inverse_distance) + depth_line.y * hit.inverse_distance * hit.inverse_distance * lift;
   nearest = identity;
 }}
 )",
@@ -418,14 +421,13 @@ void main() {{
 }
 
 // The interpolation of 5.2.3 once for each pixel, from the disc that is nearest there. Where neighbours are missing the
-// disc's own normal stays, a little behind: triangles that close the gap are drawn over it.
+// disc's own normal stays: triangles that close the gap are drawn over it. Neither discards nor moves depths, so that
+// pixels that show nothing can be sorted out before.
 std::string resolve_fragment(Shading shading, int rounds) {
   return fmt::format(R"(
 uniform usampler2D identities;
-uniform float behind;
 void main() {{
   uint identity = texelFetch(identities, ivec2(gl_FragCoord.xy), 0).x;
-  if (identity == 0xffffffffu) discard;
   int frame = frame_texels * int(identity >> 16);
   ivec2 place = place_of(int(identity & 65535u));
   mat3 eye_from_plane = eye_from_plane_of(frame);
@@ -445,12 +447,10 @@ void main() {{
   vec3 start = vec3(dot(grid_x, hit), dot(grid_y, hit), dot(grid_z, hit));
   Interpolated at = interpolate(start, middle.xy, vec3(grid_x.w, grid_y.w, grid_z.w), facing, {});
   bool single = {};
-  if (at.passes && !single) discard;
   if (at.found && !single) {{
     n = eye_from_plane * at.over_plane;
     distance *= at.along;
   }}
-  gl_FragDepth = depth_at(1.0 / (at.found ? distance : distance + behind));
   patch_colour = vec3(axis_u.w, axis_v.w, axis_n.w);
   shade(normalize(n), d, distance);
 }}
@@ -464,8 +464,10 @@ std::string vertex_of(Stage stage) {
     case Stage::map_mesh:
       return map + kPositionCode + kMapMeshVertex;
     case Stage::seam_mesh:
-    case Stage::seam_between_splats:
       return map + kPositionCode + kFramesCode + kSeamVertex;
+    case Stage::seam_between_splats:
+    case Stage::seam_over_discs:
+      return map + kRayDepth + kPositionCode + kFramesCode + kSeamVertex;
     case Stage::plain_mesh:
       return std::string(kNormalCode) + kPlainMeshVertex;
     case Stage::map_splats:
@@ -488,12 +490,14 @@ std::string vertex_of(Stage stage) {
 
 std::string fragment_of(Stage stage, Shading shading, int rounds) {
   const std::string colour = stage == Stage::map_resolve ? "vec3 patch_colour;\n" : "uniform vec3 patch_colour;\n";
-  const std::string shade = std::string(kRayCode) + colour + kPictureCentre + kShadingCode + shade_function(shading);
+  const std::string shade =
+      std::string(kRayDepth) + kRayCode + colour + kPictureCentre + kShadingCode + shade_function(shading);
   switch (stage) {
     case Stage::map_mesh:
     case Stage::seam_mesh:
     case Stage::plain_mesh:
       return shade + mesh_fragment("");
+    case Stage::seam_over_discs:
     case Stage::seam_between_splats:  // not where single splats are to be seen
       return shade + mesh_fragment(shading == Shading::split ? "if (in_patch_quarter()) discard;" : "");
     case Stage::map_splats:
@@ -503,16 +507,16 @@ std::string fragment_of(Stage stage, Shading shading, int rounds) {
       return shade + kNormalCode + kMapCode + kDiscCode + kCellCode + kInterpolationCode +
              interpolated_fragment(shading, rounds);
     case Stage::map_identity:
-      return std::string(kRayCode) + kPictureCentre + kDiscCode + identity_fragment(shading);
+      return std::string(kRayDepth) + kRayCode + kPictureCentre + kDiscCode + identity_fragment(shading);
     case Stage::map_resolve:
       return shade + kNormalCode + kMapCode + kFramesCode + kCellCode + kInterpolationCode +
              resolve_fragment(shading, rounds);
     case Stage::map_visibility:
     case Stage::plain_visibility:
-      return std::string(kRayCode) + kDiscCode + kVisibilityFragment;
+      return std::string(kRayDepth) + kRayCode + kDiscCode + kVisibilityFragment;
     case Stage::map_accumulation:
     case Stage::plain_accumulation:
-      return std::string(kRayCode) + kDiscCode + kAccumulationFragment;
+      return std::string(kRayDepth) + kRayCode + kDiscCode + kAccumulationFragment;
     case Stage::normalisation:
       return shade + kNormalisationFragment;
   }
@@ -526,7 +530,12 @@ ShaderSources shader_sources(Stage stage, Shading shading, int rounds) {
   const std::string identify = stage == Stage::map_identity
                                    ? "#define IDENTIFY identity = uint(tile) << 16 | uint(gl_VertexID);\n"
                                    : "#define IDENTIFY\n";
-  return {version + identify + vertex_of(stage), version + fragment_of(stage, shading, rounds)};
+  // Discs in front of a seam hide it only where they are farther in front than they are apart from the surface.
+  const std::string move = stage == Stage::seam_over_discs
+                               ? "#define MOVE_FORWARD gl_Position.z -= 2.0 * depth_line.y * forward / gl_Position.w;\n"
+                                 "uniform float forward;\n"
+                               : "#define MOVE_FORWARD\n";
+  return {version + identify + move + vertex_of(stage), version + fragment_of(stage, shading, rounds)};
 }
 
 }  // namespace emap

@@ -21,6 +21,7 @@ enum class Stage {
   map_mesh,             // tiles of elevation maps as strips
   seam_mesh,            // triangles between patches
   seam_between_splats,  // the same where patches are drawn as splats
+  seam_over_discs,      // the same, drawn against discs, a little nearer to the eye than it is
   plain_mesh,           // positions and normals from vertex buffers
   map_splats,           // discs, one normal each
   plain_splats,         // the same from vertex buffers
