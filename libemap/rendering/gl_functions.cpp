@@ -18,11 +18,12 @@ bool set(Pointer& pointer, GlFunction function) {
   X(glBindBuffer)                                                                                                     \
   X(glBindFramebuffer)                                                                                                \
   X(glBindRenderbuffer)                                                                                               \
-  X(glBindTexture) X(glBindVertexArray) X(glBlendFunc) X(glBufferData) X(glCheckFramebufferStatus) X(glClear)         \
-      X(glClearColor) X(glClearDepth) X(glColorMask) X(glCompileShader) X(glCreateProgram) X(glCreateShader)          \
-          X(glDeleteBuffers) X(glDeleteFramebuffers) X(glDeleteProgram) X(glDeleteRenderbuffers) X(glDeleteShader)    \
-              X(glDeleteTextures) X(glDeleteVertexArrays) X(glDepthFunc) X(glDepthMask) X(glDisable) X(glDrawArrays)  \
-                  X(glDrawElements) X(glDrawElementsBaseVertex) X(glEnable) X(glEnableVertexAttribArray) X(glFinish)  \
+  X(glBindTexture)                                                                                                    \
+  X(glBindVertexArray) X(glBlendFunc) X(glBufferData) X(glCheckFramebufferStatus) X(glClear) X(glClearColor)          \
+      X(glClearDepth) X(glColorMask) X(glCompileShader) X(glCreateProgram) X(glCreateShader) X(glDeleteBuffers)       \
+          X(glDeleteFramebuffers) X(glDeleteProgram) X(glDeleteRenderbuffers) X(glDeleteShader) X(glDeleteTextures)   \
+              X(glDeleteVertexArrays) X(glDepthFunc) X(glDepthMask) X(glDisable) X(glDrawArrays) X(glDrawElements)    \
+                  X(glDrawElementsBaseVertex) X(glEnable) X(glEnableVertexAttribArray) X(glFinish)                    \
                       X(glFramebufferRenderbuffer) X(glFramebufferTexture2D) X(glGenBuffers) X(glGenFramebuffers)     \
                           X(glGenRenderbuffers) X(glGenTextures) X(glGenVertexArrays) X(glGenerateMipmap)             \
                               X(glGetError) X(glGetIntegerv) X(glGetProgramInfoLog) X(glGetFloatv) X(glGetProgramiv)  \

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <unordered_map>
 
 #include "libemap/elevation/canonical_mesh.h"
 #include "libemap/rendering/triangle_strips.h"
+#include "libemap/surface/mesh_normals.h"
 
 namespace emap {
 namespace {
@@ -179,17 +181,42 @@ class GeometryWriter {
 
   void add_seams(const ClosedMesh& closed) {
     assert(geometry_.tiles.size() < 65536);
-    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> index(closed.mesh.positions.size(), kNone);
-    for (std::size_t t = closed.mesh.triangles.size() - closed.filling.inserted; t < closed.mesh.triangles.size(); ++t)
-      for (const std::uint32_t vertex : closed.mesh.triangles[t]) {
-        if (index[vertex] == kNone) {
-          index[vertex] = static_cast<std::uint32_t>(geometry_.seam_vertices.size());
-          geometry_.seam_vertices.push_back(vertex_places_[vertex]);
-        }
-        geometry_.seam_triangles.push_back(index[vertex]);
-      }
+    const auto& triangles = closed.mesh.triangles;
+    const std::size_t first_inserted = triangles.size() - closed.filling.inserted;
+    for (std::size_t t = first_inserted; t < triangles.size(); ++t) add_seam_triangle(triangles[t]);
     geometry_.triangles += closed.filling.inserted;
+    if (use_ == MapUse::interpolated_splats)
+      for (const std::size_t t : between_discs(closed.mesh, first_inserted)) add_seam_triangle(triangles[t]);
+  }
+
+  // Triangles with a side longer than the discs (5.1) at its ends reach: on steep slopes whose normals do not show it.
+  std::vector<std::size_t> between_discs(const Mesh& mesh, std::size_t count) const {
+    const std::vector<Eigen::Vector3d> normals = vertex_normals(mesh);
+    const std::vector<std::uint32_t> patches = patches_of_samples(maps_);
+    const auto radius = [&](std::uint32_t vertex) {
+      const double cosine = normals[vertex].dot(maps_.patches[patches[vertex]].plane.normal);
+      return std::sqrt(0.5) * maps_.spacing / (0.1 + 0.9 * std::max(cosine, 0.0));
+    };
+    std::vector<std::size_t> between;
+    for (std::size_t t = 0; t < count; ++t) {
+      const auto& triangle = mesh.triangles[t];
+      bool is_long = false;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t from = triangle[i], to = triangle[(i + 1) % 3];
+        is_long |= (mesh.positions[from] - mesh.positions[to]).norm() > 1.05 * (radius(from) + radius(to));
+      }
+      if (is_long) between.push_back(t);
+    }
+    return between;
+  }
+
+  void add_seam_triangle(const std::array<std::uint32_t, 3>& triangle) {
+    for (const std::uint32_t vertex : triangle) {
+      const auto [entry, is_new] =
+          seam_index_.try_emplace(vertex, static_cast<std::uint32_t>(geometry_.seam_vertices.size()));
+      if (is_new) geometry_.seam_vertices.push_back(vertex_places_[vertex]);
+      geometry_.seam_triangles.push_back(entry->second);
+    }
   }
 
   const ElevationMaps& maps_;
@@ -198,6 +225,7 @@ class GeometryWriter {
   Eigen::Vector3d centre_;
   double lowest_ = 0, step_ = 1;  // of the patch's elevation codes
   std::vector<std::array<std::uint16_t, 2>> vertex_places_;
+  std::unordered_map<std::uint32_t, std::uint32_t> seam_index_;  // in seam_vertices, by vertex of the closed mesh
   MapGeometry geometry_;
 };
 

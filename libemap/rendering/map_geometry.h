@@ -18,7 +18,8 @@ enum class MapUse {
   filled_mesh,                      // strips, and triangles between patches where gap filling puts them
   overlapping_mesh,                 // strips over patches grown by two rims
   splats,                           // a disc for each sample and for those of the first rim
-  interpolated_splats,              // a disc for each sample, interpolated within its map; triangles between patches
+  interpolated_splats,              // a disc for each sample, interpolated within its map; triangles between
+                                    // patches, and between discs that do not reach each other
   overlapping_interpolated_splats,  // as splats, with a second rim to interpolate towards
 };
 

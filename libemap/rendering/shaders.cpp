@@ -335,7 +335,7 @@ Cell cell_of(vec2 inside, vec2 place) {
 // triangles agree where they meet.
 Cell cell_at(vec2 place, vec2 towards, float slack) {
   vec2 way = towards - place;
-  return cell_of(place + way * min(1.0, slack / max(1e-6, length(way))), place);
+  return cell_of(place + way * min(0.9, slack / max(1e-6, length(way))), place);
 }
 )";
 
@@ -350,7 +350,7 @@ Interpolated interpolate(vec3 start, vec2 middle, vec3 eye, float facing, int ro
   vec3 way = start - eye;
   vec3 place = start;
   // Discs and triangles are apart by parallax, which the first look must bear; later ones only what rounding takes.
-  Cell cell = cell_at(place.xy, middle, rounds > 0 ? 0.3 : 0.02);
+  Cell cell = cell_at(place.xy, middle, rounds > 0 ? 0.4 : 0.01);
   for (int i = 0; i < rounds; ++i) {
     if (!cell.found) break;
     float approach = way.z - dot(cell.plane.xy, way.xy);
@@ -362,7 +362,7 @@ Interpolated interpolate(vec3 start, vec2 middle, vec3 eye, float facing, int ro
       result.passes = true;
       break;
     }
-    cell = cell_at(place.xy, middle, 0.02);
+    cell = cell_at(place.xy, middle, 0.01);
   }
   result.found = cell.found && !result.passes;
   result.over_plane = cell.weights.x * normal_of(texelFetch(normals, cell.samples.x).xy) +
@@ -402,16 +402,21 @@ void main() {{
                      reduction_of(shading), rounds);
 }
 
-// Which disc is nearest, by tile and place. Discs bulge away from the eye towards their rims: of discs at the same
-// depth the one whose centre is nearest is taken.
+// Which disc is nearest, by tile and place. Discs end a little beyond half-way to the next samples over the plane, so
+// that they do not stick out where the surface turns away. They bulge away from the eye towards their rims: of discs at
+// the same depth the one whose centre is nearest is taken.
 std::string identity_fragment(Shading shading) {
   return fmt::format(R"(
 uniform float bulge;
+uniform mat3 eye_from_plane;
+uniform float spacing;
 flat in uint identity;
 out uint nearest;
 void main() {{
   DiscHit hit = hit_disc();
   {}
+  vec2 over_plane = abs(vec2(dot(hit.from_centre, eye_from_plane[0]), dot(hit.from_centre, eye_from_plane[1])));
+  if (max(over_plane.x, over_plane.y) > 0.7 * spacing) discard;
   float lift = bulge * hit.squared / centre.w;
   gl_FragDepth = depth_at(hit.inverse_distance) + depth_line.y * hit.inverse_distance * hit.inverse_distance * lift;
   nearest = identity;
