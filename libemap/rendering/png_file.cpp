@@ -77,6 +77,7 @@ Result<Image> read_png(const std::string& path) {
   };
   if (!png_image_begin_read_from_memory(&reader, bytes->data(), bytes->size()))
     return fail(fmt::format("no PNG ({})", reader.message));
+  reader.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;  // or 16 bits would be taken for linear light
   constexpr unsigned kMostPixels = 16384;
   if (reader.width > kMostPixels || reader.height > kMostPixels)
     return fail(fmt::format("{} x {} pixels, which may be {} each", reader.width, reader.height, kMostPixels));
