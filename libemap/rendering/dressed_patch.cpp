@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "libemap/elevation/canonical_mesh.h"
+#include "libemap/rendering/smooth_normals.h"
 #include "libemap/surface/mesh_normals.h"
 #include "libemap/surface/triangle_raster.h"
 #include "libthin/foundation/parallel.h"
@@ -24,7 +25,7 @@ struct Surroundings {
   std::vector<std::uint32_t> begin_of_vertex, triangles_of_vertex;
 
   Surroundings(const ElevationMaps& all, const Mesh& closed)
-      : maps(all), surface(closed), patch_of_vertex(patches_of_samples(all)), normals(vertex_normals(closed)) {
+      : maps(all), surface(closed), patch_of_vertex(patches_of_samples(all)), normals(smooth_normals(closed)) {
     first_vertex.assign(maps.patches.size() + 1, 0);
     for (const std::uint32_t patch : patch_of_vertex) ++first_vertex[patch + 1];
     for (std::size_t i = 1; i < first_vertex.size(); ++i) first_vertex[i] += first_vertex[i - 1];

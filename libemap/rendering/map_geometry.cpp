@@ -8,8 +8,8 @@
 #include <unordered_map>
 
 #include "libemap/elevation/canonical_mesh.h"
+#include "libemap/rendering/smooth_normals.h"
 #include "libemap/rendering/triangle_strips.h"
-#include "libemap/surface/mesh_normals.h"
 
 namespace emap {
 namespace {
@@ -191,7 +191,7 @@ class GeometryWriter {
 
   // Triangles with a side longer than the discs (5.1) at its ends reach: on steep slopes whose normals do not show it.
   std::vector<std::size_t> between_discs(const Mesh& mesh, std::size_t count) const {
-    const std::vector<Eigen::Vector3d> normals = vertex_normals(mesh);
+    const std::vector<Eigen::Vector3d> normals = smooth_normals(mesh);
     const std::vector<std::uint32_t> patches = patches_of_samples(maps_);
     const auto radius = [&](std::uint32_t vertex) {
       const double cosine = normals[vertex].dot(maps_.patches[patches[vertex]].plane.normal);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libemap/surface/mesh_normals.h"
+#include "libemap/rendering/smooth_normals.h"
 #include "libemap/surface/point_radii.h"
 
 namespace emap {
@@ -37,7 +37,7 @@ std::size_t PlainGeometry::bytes() const {
 }
 
 PlainGeometry plain_mesh_geometry(const Mesh& mesh, const BoundingBox& box) {
-  PlainGeometry geometry = quantised(mesh.positions, vertex_normals(mesh), box);
+  PlainGeometry geometry = quantised(mesh.positions, smooth_normals(mesh), box);
   geometry.triangles.reserve(3 * mesh.triangles.size());
   for (const auto& triangle : mesh.triangles)
     geometry.triangles.insert(geometry.triangles.end(), triangle.begin(), triangle.end());

@@ -12,8 +12,8 @@
 #include "libemap/rendering/gl_context.h"
 #include "libemap/rendering/level_of_detail.h"
 #include "libemap/rendering/renderer.h"
+#include "libemap/rendering/smooth_normals.h"
 #include "libemap/surface/boundary_edges.h"
-#include "libemap/surface/mesh_normals.h"
 #include "libemap/surface/model_file.h"
 #include "libemap/surface/point_normals.h"
 #include "libemap/tools/commands.h"
@@ -105,7 +105,7 @@ Result<PlainGeometry> plain_splats(Model model) {
   if (model.is_mesh()) {
     Mesh mesh = mesh_of(std::move(model));
     closed = boundary_edges(mesh).size() * 1000 < mesh.triangles.size() * 3 / 2;
-    model = {mesh.positions, vertex_normals(mesh), {}};
+    model = {mesh.positions, smooth_normals(mesh), {}};
   }
   PointSet points = points_of(std::move(model));
   ensure_normals(points);

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "libemap/rendering/image.h"
+#include "libemap/rendering/smooth_normals.h"
 #include "libemap/rendering/view.h"
 #include "libemap/surface/bounding_box.h"
-#include "libemap/surface/mesh_normals.h"
 #include "libemap/surface/surface.h"
 
 namespace emap::test {
@@ -31,7 +31,7 @@ class RayCaster {
   RayCaster(Mesh mesh, const BoundingBox& box) : mesh_(std::move(mesh)) {
     for (Eigen::Vector3d& position : mesh_.positions)
       position = (position - (box.minimum + box.maximum) / 2) / box.diagonal();
-    normals_ = vertex_normals(mesh_);
+    normals_ = smooth_normals(mesh_);
     for (const auto& triangle : mesh_.triangles) {
       const auto corner = [&](std::size_t i) {
         const Eigen::Vector3d& p = mesh_.positions[triangle[i]];

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "libemap/rendering/smooth_normals.h"
 #include "libemap/surface/triangle_tree.h"
 #include "tests/support/random32.h"
 #include "tests/support/sampled_surfaces.h"
@@ -55,6 +56,13 @@ TEST(MapGeometryTest, NormalsKeepTheirDirection) {
   }
   for (const Eigen::Vector3d& axis : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(-1, 0, 0)})
     EXPECT_LT((normal_of(polar_normal(axis)) - axis).norm(), 1e-4);
+}
+
+TEST(MapGeometryTest, ASpheresNormalsAreExactWhateverItsTriangles) {
+  const Mesh sphere = test::sphere(20);
+  const std::vector<Eigen::Vector3d> normals = smooth_normals(sphere);
+  for (std::size_t i = 0; i < normals.size(); ++i)
+    EXPECT_LT((normals[i] - sphere.positions[i].normalized()).norm(), 1e-9);
 }
 
 // Every sample is drawn at its place: as a splat, and in strips and seams.
