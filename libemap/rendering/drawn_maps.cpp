@@ -9,7 +9,7 @@
 namespace emap {
 namespace {
 
-constexpr std::size_t kTexelsOfFrame = 14;  // as the shaders count them
+constexpr std::size_t kTexelsOfFrame = 12;  // as the shaders count them
 
 Stage stage_of(Pass pass) {
   switch (pass) {
@@ -140,16 +140,16 @@ class DrawnMaps : public DrawnSurface {
     for (const MapTile& tile : tiles_) {
       const Eigen::Matrix4d eye_from_grid = view.eye_from_model * tile.model_from_grid;
       const Eigen::Matrix4d clip_from_grid = view.clip_from_eye * eye_from_grid;
-      const Eigen::Matrix4d grid_from_eye = eye_from_grid.inverse();
       const Eigen::Matrix3d eye_from_plane = view.model_from_eye.transpose() * tile.model_from_plane;
-      const Eigen::Vector3d colour = patch_colour(tile.patch);
       for (int column = 0; column < 4; ++column) push(clip_from_grid.col(column).head<3>(), clip_from_grid(3, column));
       push(eye_from_plane.col(0), tile.first_row);
-      push(eye_from_plane.col(1), tile.row_count);
-      push(eye_from_plane.col(2), steepest_squared(tile));
-      for (int row = 0; row < 3; ++row) push(grid_from_eye.row(row).head<3>().transpose(), grid_from_eye(row, 3));
-      for (int column = 0; column < 3; ++column) push(eye_from_grid.col(column).head<3>(), colour[column]);
-      push(eye_from_grid.col(3).head<3>(), 0);
+      push(eye_from_plane.col(1), 0);
+      push(eye_from_plane.col(2), 0);
+      push(eye_from_grid.col(0).head<3>(), tile.first_row);
+      push(eye_from_grid.col(1).head<3>(), tile.row_count);
+      push(eye_from_grid.col(2).head<3>(), steepest_squared(tile));
+      push(eye_from_grid.col(3).head<3>(), 1 / eye_from_grid.col(2).head<3>().squaredNorm());
+      push(patch_colour(tile.patch), 0);
     }
     glActiveTexture(GL_TEXTURE0 + kFramesUnit);
     frames_ = BufferTexture(frames, GL_RGBA32F);

@@ -59,7 +59,7 @@ void main() {
 // Everything of a tile by its number (drawn_maps.cpp writes it).
 constexpr const char* kFramesCode = R"(
 uniform samplerBuffer frames;
-const int frame_texels = 14;
+const int frame_texels = 12;
 mat3 eye_from_plane_of(int frame) {
   return mat3(texelFetch(frames, frame + 4).xyz, texelFetch(frames, frame + 5).xyz, texelFetch(frames, frame + 6).xyz);
 }
@@ -435,32 +435,37 @@ void main() {{
   uint identity = texelFetch(identities, ivec2(gl_FragCoord.xy), 0).x;
   int frame = frame_texels * int(identity >> 16);
   ivec2 place = place_of(int(identity & 65535u));
-  mat3 eye_from_plane = eye_from_plane_of(frame);
-  first_row = int(texelFetch(frames, frame + 4).w);
-  row_count = int(texelFetch(frames, frame + 5).w);
-  steepest = texelFetch(frames, frame + 6).w;
-  vec4 grid_x = texelFetch(frames, frame + 7), grid_y = texelFetch(frames, frame + 8), grid_z = texelFetch(frames, frame + 9);
-  vec4 axis_u = texelFetch(frames, frame + 10), axis_v = texelFetch(frames, frame + 11), axis_n = texelFetch(frames, frame + 12);
+  // Axes of the grid, a step and an elevation code long, and at right angles: their transpose over squares is the inverse.
+  vec4 u = texelFetch(frames, frame + 7), v = texelFetch(frames, frame + 8), up = texelFetch(frames, frame + 9);
+  vec4 origin = texelFetch(frames, frame + 10);
+  first_row = int(u.w);
+  row_count = int(v.w);
+  steepest = up.w;
+  float inverse_step = inversesqrt(dot(u.xyz, u.xyz));
+  vec3 inverse_squares = vec3(inverse_step * inverse_step, inverse_step * inverse_step, origin.w);
+  mat3 eye_from_plane = mat3(u.xyz * inverse_step, v.xyz * inverse_step, up.xyz * sqrt(origin.w));
   int sample_index = texelFetch(rows, first_row + place.y).x + place.x;
   vec3 middle = vec3(place, float(texelFetch(elevations, sample_index).x));
-  vec3 p = axis_u.xyz * middle.x + axis_v.xyz * middle.y + axis_n.xyz * middle.z + texelFetch(frames, frame + 13).xyz;
+  vec3 p = u.xyz * middle.x + v.xyz * middle.y + up.xyz * middle.z + origin.xyz;
   vec3 n = eye_from_plane * normal_of(texelFetch(normals, sample_index).xy);
   vec3 d = ray();
   float facing = dot(n, p);
   float distance = facing / dot(n, d);
-  vec4 hit = vec4(d * distance, 1.0);
-  vec3 start = vec3(dot(grid_x, hit), dot(grid_y, hit), dot(grid_z, hit));
-  Interpolated at = interpolate(start, middle.xy, vec3(grid_x.w, grid_y.w, grid_z.w), facing, {});
+  mat3 axes = mat3(u.xyz, v.xyz, up.xyz);
+  vec3 start = ((d * distance - origin.xyz) * axes) * inverse_squares;
+  vec3 eye = (-origin.xyz * axes) * inverse_squares;
+  Interpolated at = interpolate(start, middle.xy, eye, facing, {});
   bool single = {};
   if (at.found && !single) {{
     n = eye_from_plane * at.over_plane;
     distance *= at.along;
   }}
-  patch_colour = vec3(axis_u.w, axis_v.w, axis_n.w);
+  {}
   shade(normalize(n), d, distance);
 }}
 )",
-                     rounds, shading == Shading::split ? "in_patch_quarter()" : "false");
+                     rounds, shading == Shading::split ? "in_patch_quarter()" : "false",
+                     shading == Shading::split ? "patch_colour = texelFetch(frames, frame + 11).xyz;" : "");
 }
 
 std::string vertex_of(Stage stage) {
