@@ -16,6 +16,7 @@ void add_info_command(CLI::App& program, Action& action);
 void add_compare_command(CLI::App& program, Action& action);
 void add_page_command(CLI::App& program, Action& action);
 void add_partition_command(CLI::App& program, Action& action);
+void add_render_command(CLI::App& program, Action& action);
 void add_resample_command(CLI::App& program, Action& action);
 
 }  // namespace emap

@@ -25,6 +25,7 @@ int main(int argc, char** argv) {
   emap::add_compare_command(program, action);
   emap::add_page_command(program, action);
   emap::add_partition_command(program, action);
+  emap::add_render_command(program, action);
   emap::add_resample_command(program, action);
   try {
     program.parse(argc, argv);

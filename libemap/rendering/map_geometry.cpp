@@ -1,0 +1,245 @@
+#include "libemap/rendering/map_geometry.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <unordered_map>
+
+#include "libemap/elevation/canonical_mesh.h"
+#include "libemap/rendering/smooth_normals.h"
+#include "libemap/rendering/triangle_strips.h"
+
+namespace emap {
+namespace {
+
+constexpr std::uint32_t kMostSide = 256;
+// Squares of a tile along a side: what is left of 256 samples after a rim at each end.
+constexpr std::uint32_t kTileSquares = kMostSide - 1 - 2 * kMostRims;
+
+bool has_seams(MapUse use) {
+  return use == MapUse::filled_mesh || use == MapUse::interpolated_splats;
+}
+
+int rims_of(MapUse use) {
+  return has_seams(use) ? 0 : use == MapUse::splats ? 1 : 2;
+}
+
+class GeometryWriter {
+ public:
+  GeometryWriter(const ElevationMaps& maps, const BoundingBox& box, MapUse use)
+      : maps_(maps), use_(use), scale_(1 / box.diagonal()), centre_((box.minimum + box.maximum) / 2) {}
+
+  MapGeometry run(const GapFillingOptions& filling) {
+    const ClosedMesh closed = closed_mesh(maps_, filling);
+    const std::vector<DressedPatch> patches = dressed_patches(maps_, closed.mesh, rims_of(use_));
+    geometry_.spacing = maps_.spacing * scale_;
+    geometry_.samples = closed.mesh.positions.size();
+    geometry_.open_edges = closed.filling.edges_left;
+    geometry_.edges = closed.mesh.triangles.size() * 3 / 2;
+    if (has_seams(use_)) vertex_places_.reserve(closed.mesh.positions.size());
+    for (std::uint32_t patch = 0; patch < patches.size(); ++patch) add_patch(patch, patches[patch]);
+    if (has_seams(use_)) add_seams(closed);
+    return std::move(geometry_);
+  }
+
+ private:
+  // Samples [first_column, last_column) x [first_row, last_row) of a patch are stored; `squares` are drawn, and splats
+  // where a square begins, or at the patch's far ends.
+  struct Region {
+    std::uint32_t first_column, last_column, first_row, last_row;
+    SquareRange squares;
+  };
+
+  void add_patch(std::uint32_t index, const DressedPatch& patch) {
+    const ElevationPatch& map = patch.map;
+    if (map.columns == 0 || map.rows == 0) return;
+    quantise(map);
+    const std::size_t first_tile = geometry_.tiles.size();
+    const auto tiles_along = [](std::uint32_t samples) {
+      return samples <= kMostSide ? 1U : (samples - 1 + kTileSquares - 1) / kTileSquares;
+    };
+    const std::uint32_t across = tiles_along(map.columns), down = tiles_along(map.rows);
+    for (std::uint32_t y = 0; y < down; ++y)
+      for (std::uint32_t x = 0; x < across; ++x) add_tile(index, patch, region_of(map, x, across, y, down));
+    if (has_seams(use_)) note_vertices(map, first_tile, across, down);
+  }
+
+  static Region region_of(const ElevationPatch& map, std::uint32_t x, std::uint32_t across, std::uint32_t y,
+                          std::uint32_t down) {
+    const auto part = [](std::uint32_t index, std::uint32_t count, std::uint32_t samples) {
+      const std::uint32_t first = index * kTileSquares;
+      const std::uint32_t last = index + 1 == count ? samples - 1 : first + kTileSquares;
+      return std::array<std::uint32_t, 4>{first, last, first >= kMostRims && count > 1 ? first - kMostRims : 0,
+                                          std::min(last + 1 + kMostRims, samples)};
+    };
+    const auto column = part(x, across, map.columns), row = part(y, down, map.rows);
+    return {column[2], column[3], row[2], row[3], {column[0], column[1], row[0], row[1]}};
+  }
+
+  // One range of elevations for the whole patch, so that tiles agree where they meet.
+  void quantise(const ElevationPatch& map) {
+    lowest_ = std::numeric_limits<double>::infinity();
+    double highest = -lowest_;
+    for (std::size_t i = 0; i < map.mask.size(); ++i) {
+      if (!map.mask[i]) continue;
+      lowest_ = std::min(lowest_, map.elevation[i]);
+      highest = std::max(highest, map.elevation[i]);
+    }
+    if (!(highest >= lowest_)) lowest_ = highest = 0;
+    step_ = highest > lowest_ ? (highest - lowest_) / (MapGeometry::kNothing - 1) : 1;
+  }
+
+  void add_tile(std::uint32_t index, const DressedPatch& patch, const Region& region) {
+    MapTile tile;
+    tile.patch = index;
+    place_tile(patch.map, region, tile);
+    store_samples(patch, region, tile);
+    const auto place = [&](std::uint32_t row, std::uint32_t column) {
+      return place_in_grid(row - region.first_row, column - region.first_column);
+    };
+    tile.first_strip = static_cast<std::uint32_t>(geometry_.strips.size());
+    tile.first_splat = static_cast<std::uint32_t>(geometry_.splats.size());
+    if (use_ == MapUse::filled_mesh || use_ == MapUse::overlapping_mesh) {
+      const double steepest_slope = std::tan(CanonicalOptions().steepest_degrees * std::numbers::pi / 180);
+      append_strip(patch.map, maps_.spacing, steepest_slope, region.squares, place, geometry_.strips);
+    } else {
+      list_splats(patch, region, place);
+    }
+    tile.strip_count = static_cast<std::uint32_t>(geometry_.strips.size()) - tile.first_strip;
+    tile.splat_count = static_cast<std::uint32_t>(geometry_.splats.size()) - tile.first_splat;
+    for (std::uint32_t i = 2; i < tile.strip_count; ++i) {
+      const std::uint16_t* corner = geometry_.strips.data() + tile.first_strip + i;
+      geometry_.triangles += corner[0] != corner[-1] && corner[0] != corner[-2] && corner[-1] != corner[-2];
+    }
+    geometry_.tiles.push_back(tile);
+  }
+
+  void place_tile(const ElevationPatch& map, const Region& region, MapTile& tile) const {
+    const BasePlane& plane = map.plane;
+    tile.model_from_plane << plane.axis_u, plane.axis_v, plane.normal;
+    const Eigen::Vector3d origin =
+        plane.origin + maps_.spacing * (region.first_column * plane.axis_u + region.first_row * plane.axis_v) +
+        lowest_ * plane.normal;
+    tile.model_from_grid.col(0).head<3>() = scale_ * maps_.spacing * plane.axis_u;
+    tile.model_from_grid.col(1).head<3>() = scale_ * maps_.spacing * plane.axis_v;
+    tile.model_from_grid.col(2).head<3>() = scale_ * step_ * plane.normal;
+    tile.model_from_grid.col(3).head<3>() = scale_ * (origin - centre_);
+  }
+
+  void store_samples(const DressedPatch& patch, const Region& region, MapTile& tile) {
+    const ElevationPatch& map = patch.map;
+    tile.first_row = static_cast<std::uint32_t>(geometry_.rows.size());
+    tile.row_count = region.last_row - region.first_row;
+    for (std::uint32_t row = region.first_row; row < region.last_row; ++row) {
+      const std::uint8_t* mask = map.mask.data() + std::size_t{row} * map.columns;
+      std::uint32_t first = region.first_column, last = region.last_column;
+      while (first < last && !mask[first]) ++first;
+      while (last > first && !mask[last - 1]) --last;
+      const auto stored = static_cast<std::int32_t>(geometry_.elevations.size());
+      const std::uint32_t left = first - region.first_column;
+      geometry_.rows.push_back({stored - static_cast<std::int32_t>(left), static_cast<std::int16_t>(left),
+                                static_cast<std::int16_t>(static_cast<std::int32_t>(left + last - first) - 1)});
+      for (std::uint32_t column = first; column < last; ++column) {
+        const std::size_t place = std::size_t{row} * map.columns + column;
+        geometry_.elevations.push_back(mask[column] ? code_of(map.elevation[place]) : MapGeometry::kNothing);
+        geometry_.normals.push_back(polar_normal(patch.normal[place].cast<double>()));
+      }
+    }
+  }
+
+  std::uint16_t code_of(double elevation) const {
+    return static_cast<std::uint16_t>(
+        std::clamp(std::lround((elevation - lowest_) / step_), 0L, MapGeometry::kNothing - 1L));
+  }
+
+  template <class Place>
+  void list_splats(const DressedPatch& patch, const Region& region, const Place& place) {
+    const ElevationPatch& map = patch.map;
+    const SquareRange& squares = region.squares;
+    const std::uint32_t last_column = squares.last_column + (squares.last_column + 1 == map.columns ? 1 : 0);
+    const std::uint32_t last_row = squares.last_row + (squares.last_row + 1 == map.rows ? 1 : 0);
+    for (std::uint32_t row = squares.first_row; row < last_row; ++row)
+      for (std::uint32_t column = squares.first_column; column < last_column; ++column) {
+        const std::uint8_t ring = patch.ring[std::size_t{row} * map.columns + column];
+        if (ring == 1 || ring == 2) geometry_.splats.push_back(place(row, column));
+      }
+  }
+
+  // The tile and place of each sample of the map, in the order of the closed mesh's vertices.
+  void note_vertices(const ElevationPatch& map, std::size_t first_tile, std::uint32_t across, std::uint32_t down) {
+    for (std::uint32_t row = 0; row < map.rows; ++row)
+      for (std::uint32_t column = 0; column < map.columns; ++column) {
+        if (!map.mask[std::size_t{row} * map.columns + column]) continue;
+        const std::uint32_t x = std::min(column / kTileSquares, across - 1), y = std::min(row / kTileSquares, down - 1);
+        const Region region = region_of(map, x, across, y, down);
+        vertex_places_.push_back({static_cast<std::uint16_t>(first_tile + std::size_t{y} * across + x),
+                                  place_in_grid(row - region.first_row, column - region.first_column)});
+      }
+  }
+
+  void add_seams(const ClosedMesh& closed) {
+    assert(geometry_.tiles.size() < 65536);
+    const auto& triangles = closed.mesh.triangles;
+    const std::size_t first_inserted = triangles.size() - closed.filling.inserted;
+    for (std::size_t t = first_inserted; t < triangles.size(); ++t) add_seam_triangle(triangles[t]);
+    geometry_.triangles += closed.filling.inserted;
+    if (use_ == MapUse::interpolated_splats)
+      for (const std::size_t t : between_discs(closed.mesh, first_inserted)) add_seam_triangle(triangles[t]);
+  }
+
+  // Triangles with a side longer than the discs (5.1) at its ends reach: on steep slopes whose normals do not show it.
+  std::vector<std::size_t> between_discs(const Mesh& mesh, std::size_t count) const {
+    const std::vector<Eigen::Vector3d> normals = smooth_normals(mesh);
+    const std::vector<std::uint32_t> patches = patches_of_samples(maps_);
+    const auto radius = [&](std::uint32_t vertex) {
+      const double cosine = normals[vertex].dot(maps_.patches[patches[vertex]].plane.normal);
+      return std::sqrt(0.5) * maps_.spacing / (0.1 + 0.9 * std::max(cosine, 0.0));
+    };
+    std::vector<std::size_t> between;
+    for (std::size_t t = 0; t < count; ++t) {
+      const auto& triangle = mesh.triangles[t];
+      bool is_long = false;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t from = triangle[i], to = triangle[(i + 1) % 3];
+        is_long |= (mesh.positions[from] - mesh.positions[to]).norm() > 1.05 * (radius(from) + radius(to));
+      }
+      if (is_long) between.push_back(t);
+    }
+    return between;
+  }
+
+  void add_seam_triangle(const std::array<std::uint32_t, 3>& triangle) {
+    for (const std::uint32_t vertex : triangle) {
+      const auto [entry, is_new] =
+          seam_index_.try_emplace(vertex, static_cast<std::uint32_t>(geometry_.seam_vertices.size()));
+      if (is_new) geometry_.seam_vertices.push_back(vertex_places_[vertex]);
+      geometry_.seam_triangles.push_back(entry->second);
+    }
+  }
+
+  const ElevationMaps& maps_;
+  MapUse use_;
+  double scale_;
+  Eigen::Vector3d centre_;
+  double lowest_ = 0, step_ = 1;  // of the patch's elevation codes
+  std::vector<std::array<std::uint16_t, 2>> vertex_places_;
+  std::unordered_map<std::uint32_t, std::uint32_t> seam_index_;  // in seam_vertices, by vertex of the closed mesh
+  MapGeometry geometry_;
+};
+
+}  // namespace
+
+std::size_t MapGeometry::bytes() const {
+  const std::size_t seam_index_bytes = seam_vertices.size() <= 65536 ? 2 : 4;
+  return 128 * tiles.size() + sizeof(MapRow) * rows.size() + 2 * elevations.size() + 4 * normals.size() +
+         2 * (strips.size() + splats.size()) + 4 * seam_vertices.size() + seam_index_bytes * seam_triangles.size();
+}
+
+MapGeometry map_geometry(const ElevationMaps& maps, const BoundingBox& box, MapUse use,
+                         const GapFillingOptions& filling) {
+  return GeometryWriter(maps, box, use).run(filling);
+}
+
+}  // namespace emap
