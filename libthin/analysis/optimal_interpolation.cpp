@@ -73,7 +73,7 @@ void OptimalInterpolation::multiply(const Rows& rows, std::span<const double> x,
     (block == 8   ? multiply_block<8>
      : block == 4 ? multiply_block<4>
      : block == 2 ? multiply_block<2>
-                  : multiply_block<1>)(rows, &x[first], channels, &product[first]);
+                  : multiply_block<1>)(rows, x.data() + first, channels, product.data() + first);
     first += block;
   }
 }
