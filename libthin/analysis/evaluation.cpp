@@ -51,6 +51,7 @@ Result<void> thin_to(const ObservationSet& set, const Variant& variant, std::opt
   Result<Choice> choice = timed_choice(*variant.thinner, set, repetitions, cost);
   if (!choice) return choice.error();
   result.retained = std::move(choice->retained);
+  result.members = std::move(choice->members);
   result.notes = std::move(choice->notes);
   return {};
 }
@@ -77,11 +78,17 @@ void thin_all(const ObservationSet& set, const std::vector<Variant>& variants, c
 Result<void> add_errors(const ObservationSet& set, const EvaluationOptions& options, Evaluation& evaluation) {
   std::vector<Retained> thinned;
   for (const Evaluated& result : evaluation.results) thinned.push_back(result.retained);
-  auto errors = common_errors(set, thinned, {.bandwidth_km = options.bandwidth_km, .level = options.level});
+  const CommonErrorOptions common{.bandwidth_km = options.bandwidth_km, .level = options.level};
+  auto errors = common_errors(set, thinned, common);
   if (!errors) return errors.error();
   for (std::size_t i = 0; i < thinned.size(); ++i) {
     Evaluated& result = evaluation.results[i];
     result.error = std::move((*errors)[i]);
+    if (!result.members.empty()) {
+      auto of_means = common_error_of_means(set, result.members, common);
+      if (!of_means) return of_means.error();
+      result.error = std::move(*of_means);
+    }
     result.signal_to_noise_observations_db =
         signal_to_noise_db(evaluation.mean_absolute_value_k, result.error.at_observations.mean_squared_k2);
     result.signal_to_noise_grid_db =

@@ -38,6 +38,7 @@ struct Evaluated {
   std::optional<std::int64_t> asked;   // to retain; nothing: the method stops by itself
   std::optional<double> fitted_value;  // of the variant's option `fit`
   Retained retained;
+  std::vector<Retained> members;  // as Choice's
   std::vector<std::string> notes;
   SeparationStatistics separation;
   CommonError error;

@@ -8,7 +8,6 @@
 
 #include "libthin/analysis/gaussian_field.h"
 #include "libthin/analysis/optimal_interpolation.h"
-#include "libthin/analysis/uniform_subset.h"
 #include "libthin/estimation/gme_grid.h"
 #include "libthin/foundation/kd_tree.h"
 #include "libthin/observations/time.h"
@@ -60,27 +59,41 @@ double mean_square(std::span<const double> values) {
   return sum / static_cast<double>(std::max<std::size_t>(values.size(), 1));
 }
 
+// Innovations, innovations with fresh errors, errors: as channels of one set, so that means can be taken of all.
+ObservationSet side_by_side(const TwinCase& made) {
+  const std::size_t n = made.innovations.size(), channels = made.innovations.channel_count();
+  ObservationSet all = made.innovations;
+  all.values.clear();
+  for (std::size_t i = 0; i < n; ++i)
+    for (const std::vector<double>* part : {&made.innovations.values, &made.fresh_k, &made.errors.errors_k})
+      for (std::size_t c = 0; c < channels; ++c) all.values.push_back((*part)[i * channels + c]);
+  all.channels.resize(3 * channels);
+  std::iota(all.channels.begin(), all.channels.end(), 1);
+  return all;
+}
+
+std::vector<double> columns(const ObservationSet& set, std::size_t first, std::size_t count) {
+  std::vector<std::size_t> places(count);
+  std::iota(places.begin(), places.end(), first);
+  return set.select_channels(places).values;
+}
+
 class Scorer {
  public:
-  Scorer(const TwinOptions& options, const TwinCase& twin_case) : options_(options), case_(twin_case) {
+  Scorer(const TwinOptions& options, const TwinCase& twin_case)
+      : options_(options), case_(twin_case), all_(side_by_side(twin_case)) {
     for (const double factor : options.error_factors)
       ratios_.push_back(factor * options.observations.total_error_k() / options.background_error_k);
   }
 
-  void add(TwinScore& score, const Retained& retained) const {
+  void add(TwinScore& score, const Choice& choice) const {
     const std::size_t channels = case_.innovations.channel_count();
-    std::vector<Vector3> places;
-    std::vector<double> values, errors;  // as observed and with fresh errors, side by side
+    const ObservationSet chosen = chosen_observations(all_, choice);
+    const std::vector<double> values = columns(chosen, 0, 2 * channels),
+                              errors = columns(chosen, 2 * channels, channels);
     double outliers = 0;
-    for (const std::uint32_t i : retained) {
-      places.push_back(case_.innovations.position_km[i]);
-      const auto row = static_cast<std::ptrdiff_t>(i * channels), end = static_cast<std::ptrdiff_t>((i + 1) * channels);
-      values.insert(values.end(), case_.innovations.values.begin() + row, case_.innovations.values.begin() + end);
-      values.insert(values.end(), case_.fresh_k.begin() + row, case_.fresh_k.begin() + end);
-      errors.insert(errors.end(), case_.errors.errors_k.begin() + row, case_.errors.errors_k.begin() + end);
-      outliers += case_.errors.is_outlier[i];
-    }
-    const OptimalInterpolation interpolation(places, case_.targets, options_.length_km());
+    for (const std::uint32_t i : choice.retained) outliers += case_.errors.is_outlier[i];
+    const OptimalInterpolation interpolation(chosen.position_km, case_.targets, options_.length_km());
     const auto increments = interpolation.estimates(values, 2 * channels, ratios_);
     score.mean_squared_k2.resize(ratios_.size());
     score.with_fresh_errors.resize(ratios_.size());
@@ -95,14 +108,15 @@ class Scorer {
       score.mean_squared_k2[f].push_back(squares[0] / count);
       score.with_fresh_errors[f].push_back(squares[1] / count);
     }
-    score.retained.push_back(static_cast<double>(retained.size()));
+    score.retained.push_back(static_cast<double>(choice.retained.size()));
     score.retained_error_k.push_back(std::sqrt(mean_square(errors)));
-    score.outlier_share.push_back(outliers / static_cast<double>(std::max<std::size_t>(retained.size(), 1)));
+    score.outlier_share.push_back(outliers / static_cast<double>(std::max<std::size_t>(choice.retained.size(), 1)));
   }
 
  private:
   const TwinOptions& options_;
   const TwinCase& case_;
+  const ObservationSet all_;
   std::vector<double> ratios_;
 };
 
@@ -121,19 +135,6 @@ std::vector<TwinScore> empty_scores(const std::vector<Variant>& variants, const 
   for (std::size_t v = 0; v < variants.size(); ++v)
     for (const auto& asked : numbers_for(variants[v], options.counts)) add(variants[v].label, v, asked);
   return scores;
-}
-
-Result<Retained> choose(const TwinScore& score, const std::vector<Variant>& variants, const ObservationSet& set,
-                        std::uint64_t seed) {
-  const std::size_t count = score.asked ? static_cast<std::size_t>(*score.asked) : set.size();
-  if (!score.variant && score.label == "farthest_point") return farthest_point_subset(set.position_km, count);
-  if (!score.variant) return random_subset(set.size(), count, seed);
-  const Variant& variant = variants[*score.variant];
-  const Result<std::optional<double>> aimed = aim_at(variant, set, score.asked);
-  if (!aimed) return aimed.error();
-  Result<Choice> choice = variant.thinner->thin(set);
-  if (!choice) return choice.error();
-  return std::move(choice->retained);
 }
 
 std::uint64_t case_seed(const TwinOptions& options, int number) {
@@ -173,6 +174,10 @@ Result<TwinCase> twin_case(const TwinOptions& options, int number) {
   const std::uint64_t seed = case_seed(options, number);
   TwinCase made;
   made.innovations = std::move(*places);
+  if (made.innovations.size() == 0)
+    return Error{ErrorKind::input,
+                 fmt::format("case {}: the satellites see land alone; choose a longer window_minutes or another begin",
+                             number + 1)};
   made.targets = targets_near(made.innovations);
   made.background_error_k = background_errors(made.targets, options, seed);
   made.errors = twin_errors(made.innovations, options.observations, seed + 500);
@@ -196,13 +201,14 @@ Result<Twin> twin_experiment(const std::vector<Variant>& variants, const TwinOpt
     twin.observations.push_back(static_cast<double>(made->innovations.size()));
     const Scorer scorer(options, *made);
     for (TwinScore& score : twin.scores) {
-      const Result<Retained> retained = choose(score, variants, made->innovations, case_seed(options, number) + 900);
-      if (!retained && score.variant) {
+      const Result<Choice> choice = choose_set(score.variant ? &variants[*score.variant] : nullptr, score.label,
+                                               made->innovations, score.asked, case_seed(options, number) + 900);
+      if (!choice && score.variant) {
         const auto same = [&](const auto& failure) { return failure.variant == *score.variant; };
         if (std::none_of(twin.failures.begin(), twin.failures.end(), same))
-          twin.failures.push_back({*score.variant, retained.error().message});
+          twin.failures.push_back({*score.variant, choice.error().message});
       }
-      if (retained) scorer.add(score, *retained);
+      if (choice) scorer.add(score, *choice);
     }
   }
   const auto failed = [&](const TwinScore& score) {

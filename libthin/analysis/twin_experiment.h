@@ -42,7 +42,7 @@ struct TwinCase {
   std::vector<Vector3> targets;            // GME level 6, within 100 km of an observation
   std::vector<double> background_error_k;  // background less truth, targets x channels
 };
-// Errors: as twin_places()
+// Errors: as twin_places(); input, where nothing but land is seen
 Result<TwinCase> twin_case(const TwinOptions& options, int number);
 
 struct TwinScore {

@@ -27,6 +27,7 @@ void TwinObservationOptions::declare(OptionTable& table) {
   table.add("outlier_share", outlier_share,
             {.minimum = 0, .maximum = 1, .explanation = "share of the observations with a gross error besides"});
   table.add("outlier_size_k", outlier_size_k, {.unit = "K", .minimum = 0, .explanation = "of a gross error"});
+  table.add("bias_k", bias_k, {.unit = "K", .explanation = "of all observations"});
 }
 
 double TwinObservationOptions::total_error_k() const {
@@ -68,7 +69,7 @@ Result<ObservationSet> twin_places(const TwinObservationOptions& options, std::i
 TwinErrors twin_errors(const ObservationSet& places, const TwinObservationOptions& options, std::uint64_t seed) {
   const std::size_t n = places.size(), channels = places.channel_count();
   TwinErrors errors{normal_numbers(n * channels, seed), std::vector<std::uint8_t>(n, 0)};
-  for (double& error : errors.errors_k) error *= options.observation_error_k;
+  for (double& error : errors.errors_k) error = options.bias_k + options.observation_error_k * error;
   for (std::size_t c = 0; c < channels && options.correlated_error_k > 0; ++c) {
     const GaussianField field(seed + 101 + c, options.correlated_length_km);
     const std::vector<double> correlated = field.at(places.position_km);

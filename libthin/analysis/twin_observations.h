@@ -23,9 +23,10 @@ struct TwinObservationOptions {
   double correlated_length_km = 140;
   double outlier_share = 0;
   double outlier_size_k = 3;
+  double bias_k = 0;
 
   void declare(OptionTable& table);
-  // Of the errors that belong to the observations, outliers apart: white and correlated together, K.
+  // Of the errors that belong to the observations, white and correlated together, K; outliers and bias apart.
   double total_error_k() const;
 };
 

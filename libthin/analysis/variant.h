@@ -27,4 +27,9 @@ std::vector<std::optional<std::int64_t>> numbers_for(const Variant& variant, con
 Result<std::optional<double>> aim_at(const Variant& variant, const ObservationSet& observations,
                                      std::optional<std::int64_t> asked);
 
+// What goes on, of one variant or of a set to compare with: "farthest_point" (even), "random", any other: all.
+// asked: how many. Errors: as aim_at() and Thinner::thin()
+Result<Choice> choose_set(const Variant* variant, const std::string& label, const ObservationSet& observations,
+                          std::optional<std::int64_t> asked, std::uint64_t seed);
+
 }  // namespace thin

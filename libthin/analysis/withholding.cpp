@@ -90,19 +90,14 @@ struct Remaining {
   }
 };
 
-std::vector<Prediction> predict(const Draw& draw, const Retained& retained, const std::vector<std::size_t>& channels,
-                                const WithholdingOptions& options) {
+std::vector<Prediction> predict(const Draw& draw, const ObservationSet& chosen,
+                                const std::vector<std::size_t>& channels, const WithholdingOptions& options) {
   const std::size_t k = channels.size(), all = draw.channel_count(), ratios = options.error_ratios.size();
-  std::vector<Vector3> places;
-  std::vector<double> values;
-  for (const std::uint32_t i : retained) {
-    places.push_back(draw.rest.position_km[i]);
-    for (const std::size_t channel : channels) values.push_back(draw.rest.values_of(i)[channel]);
-  }
+  const std::vector<double> values = chosen.select_channels(channels).values;
   Remaining remaining{std::vector<double>(options.lengths_km.size() * ratios * 2 * k, 0), k};
   std::vector<double> half_sums(2 * k, 0);
   for (std::size_t l = 0; l < options.lengths_km.size(); ++l) {
-    const OptimalInterpolation interpolation(places, draw.places, options.lengths_km[l]);
+    const OptimalInterpolation interpolation(chosen.position_km, draw.places, options.lengths_km[l]);
     const auto estimates = interpolation.estimates(values, k, options.error_ratios);
     for (std::size_t r = 0; r < ratios; ++r)
       for (std::size_t i = 0; i < draw.places.size(); ++i)
@@ -176,43 +171,29 @@ class CrossValidation {
   void run(int number, const Progress& progress) {
     const Draw draw = drawn(set_, options_, number);
     result_.withheld_count = draw.places.size(), result_.rest_count = draw.rest.size();
-    std::vector<std::uint32_t> everything(draw.rest.size());
-    std::iota(everything.begin(), everything.end(), 0U);
     std::vector<std::size_t> channels(draw.channel_count());
     std::iota(channels.begin(), channels.end(), 0U);
     progress(fmt::format("draw {} of {}: all {}", number + 1, options_.draws, draw.rest.size()));
-    of_all_ = predict(draw, everything, channels, options_);
+    of_all_ = predict(draw, draw.rest, channels, options_);
     std::vector<ObservationSet> inputs;
     for (const auto& by : thinnings_) inputs.push_back(thinned_by(draw, by));
     next_score_ = 0;
     for (WithheldSet& set : result_.sets) {
       if (&set != &result_.sets.front())
         progress(fmt::format("draw {} of {}: {}", number + 1, options_.draws, set.label));
-      std::vector<Retained> retained;
+      std::vector<Choice> choices;
       for (const ObservationSet& input : inputs) {
-        Result<Retained> one = choose(set, input, draw.seed);
-        retained.push_back(one ? std::move(*one) : Retained{});
+        Result<Choice> one =
+            choose_set(set.variant ? &variants_[*set.variant] : nullptr, set.label, input, set.asked, draw.seed);
+        // A failure leaves an empty set, whose scores are taken out at the end.
+        choices.push_back(one ? std::move(*one) : Choice{});
         if (!one && set.variant) fail(*set.variant, one.error().message);
       }
-      score(draw, set, retained);
+      score(draw, set, choices);
     }
   }
 
  private:
-  // A failure leaves an empty set, whose scores are taken out at the end.
-  Result<Retained> choose(const WithheldSet& set, const ObservationSet& input, std::uint64_t seed) const {
-    const std::size_t n = input.size(), count = static_cast<std::size_t>(set.asked.value_or(0));
-    if (!set.variant && set.label == kFarthestPoint) return farthest_point_subset(input.position_km, count);
-    if (!set.variant && set.label == kRandom) return random_subset(n, count, seed);
-    if (!set.variant) return random_subset(n, n, seed);
-    const Variant& variant = variants_[*set.variant];
-    const Result<std::optional<double>> aimed = aim_at(variant, input, set.asked);
-    if (!aimed) return aimed.error();
-    Result<Choice> choice = variant.thinner->thin(input);
-    if (!choice) return choice.error();
-    return std::move(choice->retained);
-  }
-
   void fail(std::size_t variant, const std::string& reason) {
     const bool known = std::any_of(result_.failures.begin(), result_.failures.end(),
                                    [&](const auto& failure) { return failure.variant == variant; });
@@ -220,10 +201,13 @@ class CrossValidation {
   }
 
   // Equal sets, as those of methods that don't look at values, are predicted from once.
-  void score(const Draw& draw, WithheldSet& set, const std::vector<Retained>& retained) {
+  void score(const Draw& draw, WithheldSet& set, const std::vector<Choice>& choices) {
     std::map<Retained, std::vector<std::size_t>> wanted;  // channels
+    std::map<Retained, ObservationSet> chosen;
     for (std::size_t t = 0; t < thinnings_.size(); ++t) {
-      std::vector<std::size_t>& channels = wanted[retained[t]];
+      const Retained& retained = choices[t].retained;
+      if (!chosen.contains(retained)) chosen[retained] = chosen_observations(draw.rest, choices[t]);
+      std::vector<std::size_t>& channels = wanted[retained];
       if (thinnings_[t])
         channels.push_back(static_cast<std::size_t>(*thinnings_[t]));
       else
@@ -233,32 +217,33 @@ class CrossValidation {
     for (auto& [subset, channels] : wanted) {
       std::sort(channels.begin(), channels.end());
       channels.erase(std::unique(channels.begin(), channels.end()), channels.end());
-      const std::vector<Prediction> found = predict(draw, subset, channels, options_);
+      const std::vector<Prediction> found = predict(draw, chosen[subset], channels, options_);
       std::vector<Prediction>& by_channel = predictions[subset];
       by_channel.resize(draw.channel_count());
       for (std::size_t c = 0; c < channels.size(); ++c) by_channel[channels[c]] = found[c];
     }
     for (std::size_t t = 0; t < thinnings_.size(); ++t) {
-      set.retained[t] += static_cast<double>(retained[t].size()) / options_.draws;
-      const std::vector<Prediction>& found = predictions[retained[t]];
+      const Retained& retained = choices[t].retained;
+      set.retained[t] += static_cast<double>(retained.size()) / options_.draws;
+      const std::vector<Prediction>& found = predictions[retained];
       if (thinnings_[t])
-        add(draw, static_cast<std::size_t>(*thinnings_[t]), found, retained[t]);
+        add(draw, static_cast<std::size_t>(*thinnings_[t]), found, chosen[retained]);
       else {
-        for (std::size_t c = 0; c < draw.channel_count(); ++c) add(draw, c, found, retained[t]);
+        for (std::size_t c = 0; c < draw.channel_count(); ++c) add(draw, c, found, chosen[retained]);
         add_mean(found);
       }
     }
   }
 
-  void add(const Draw& draw, std::size_t channel, const std::vector<Prediction>& found, const Retained& retained) {
+  void add(const Draw& draw, std::size_t channel, const std::vector<Prediction>& found, const ObservationSet& chosen) {
     WithheldScore& score = result_.scores[next_score_++];
     const Prediction& one = found[channel];
     score.relative_rms.push_back(std::sqrt(one.remaining));
     score.explained.push_back(1 - one.remaining);
     score.share_of_all.push_back(share(1 - one.remaining, 1 - of_all_[channel].remaining));
     double squares = 0;
-    for (const std::uint32_t i : retained) squares += std::pow(draw.rest.values_of(i)[channel], 2);
-    score.retained_rms.push_back(std::sqrt(squares / static_cast<double>(std::max<std::size_t>(retained.size(), 1))) /
+    for (std::size_t i = 0; i < chosen.size(); ++i) squares += std::pow(chosen.values_of(i)[channel], 2);
+    score.retained_rms.push_back(std::sqrt(squares / static_cast<double>(std::max<std::size_t>(chosen.size(), 1))) /
                                  draw.deviation_k[channel]);
     score.length_km.push_back(one.length_km);
     score.error_ratio.push_back(one.error_ratio);
@@ -271,9 +256,6 @@ class CrossValidation {
     score.explained.push_back(1 - remaining);
     score.share_of_all.push_back(share(1 - remaining, 1 - mean_remaining(of_all_)));
   }
-
-  static constexpr const char* kFarthestPoint = "farthest_point";
-  static constexpr const char* kRandom = "random";
 
   const ObservationSet& set_;
   const std::vector<Variant>& variants_;

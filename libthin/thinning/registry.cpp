@@ -7,6 +7,7 @@
 #include "libthin/thinning/octree.h"
 #include "libthin/thinning/poisson_disk.h"
 #include "libthin/thinning/stepwise.h"
+#include "libthin/thinning/superob.h"
 #include "libthin/thinning/thinning_method.h"
 #include "libthin/thinning/top_down_clustering.h"
 
@@ -48,6 +49,8 @@ std::span<const MethodEntry> thinning_methods() {
                   "the filter Poisson Disk Thinning of JEDI's UFO", make<PoissonDisk>},
       MethodEntry{"stepwise", "every s-th field of view of every s-th scan line", "the reference of thesis 6.5",
                   make<Stepwise>},
+      MethodEntry{"superob", "all observations of a box become one, their mean: not a subset, CF netCDF alone",
+                  "superobbing as centres use it; Lorenc 1981, Purser et al. 2000", make<Superob>},
       MethodEntry{"top_down_clustering", "one observation per cluster of near places and like values",
                   "thesis 6.3.1, eq. 6.8, 6.9; Gersho and Gray 1992", make<TopDownClustering>},
       MethodEntry{"top_down_eea",

@@ -21,9 +21,25 @@ struct Arguments {
 
 int show_keys() {
   TwinOptions options;
-  OptionTable table;
+  TwinCycleOptions cycle_options;
+  OptionTable table, cycle;
   options.declare(table);
+  cycle_options.declare(cycle);
   fmt::print("[twin]: analysis errors at one time; [[twin.variant]] as [[evaluate.variant]]\n{}", options_text(table));
+  fmt::print("[cycle]: instead, where cycles is not 0: forecast and analysis for weeks\n{}", options_text(cycle));
+  return 0;
+}
+
+void complain(const std::vector<Evaluation::Failure>& failures, const TwinSettings& settings) {
+  for (const Evaluation::Failure& failure : failures)
+    spdlog::error("{}: {}", settings.variants[failure.variant].label, failure.reason);
+}
+
+Result<int> write(const Arguments& arguments, const std::string& table, const std::string& json) {
+  fmt::print("{}", table);
+  if (arguments.json.empty()) return 0;
+  const Result<void> written = write_text_atomically(arguments.json, json);
+  if (!written) return written.error();
   return 0;
 }
 
@@ -35,15 +51,17 @@ Result<int> run(const Arguments& arguments) {
   if (!settings) return settings.error();
   const ThreadLimit limit(settings->threads);
   const auto progress = [](const std::string& sentence) { spdlog::info("{}", sentence); };
+  if (settings->cycle.cycles > 0) {
+    const Result<TwinCycles> cycles =
+        twin_cycles(settings->variants, settings->twin.observations, settings->cycle, settings->twin.seed, progress);
+    if (!cycles) return cycles.error();
+    complain(cycles->failures, *settings);
+    return write(arguments, cycles_table(*cycles, *settings), cycles_json(*cycles, *settings));
+  }
   const Result<Twin> twin = twin_experiment(settings->variants, settings->twin, progress);
   if (!twin) return twin.error();
-  for (const Evaluation::Failure& failure : twin->failures)
-    spdlog::error("{}: {}", settings->variants[failure.variant].label, failure.reason);
-  fmt::print("{}", twin_table(*twin, *settings));
-  if (arguments.json.empty()) return 0;
-  const Result<void> written = write_text_atomically(arguments.json, twin_json(*twin, *settings));
-  if (!written) return written.error();
-  return 0;
+  complain(twin->failures, *settings);
+  return write(arguments, twin_table(*twin, *settings), twin_json(*twin, *settings));
 }
 
 }  // namespace

@@ -48,6 +48,21 @@ Json score_json(const TwinScore& score, const Twin& twin, const TwinOptions& opt
           {"with_fresh_errors_k2", score.with_fresh_errors}};
 }
 
+// Consecutive cycles are alike: the interval is taken over blocks of `block` cycles.
+std::vector<double> block_means(const std::vector<double>& numbers, std::size_t block) {
+  std::vector<double> means;
+  for (std::size_t begin = 0; begin + block <= numbers.size(); begin += block) {
+    double sum = 0;
+    for (std::size_t i = begin; i < begin + block; ++i) sum += numbers[i];
+    means.push_back(sum / static_cast<double>(block));
+  }
+  return means.empty() ? numbers : means;
+}
+
+double mean_of(const std::vector<double>& numbers) {
+  return numbers.empty() ? 0 : mean_with_interval(numbers).mean;
+}
+
 }  // namespace
 
 std::string twin_json(const Twin& twin, const TwinSettings& settings) {
@@ -61,6 +76,47 @@ std::string twin_json(const Twin& twin, const TwinSettings& settings) {
   for (const TwinScore& score : twin.scores) json["scores"].push_back(score_json(score, twin, settings.twin));
   json["failures"] = failures_json(twin.failures, settings.variants);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string cycles_json(const TwinCycles& cycles, const TwinSettings& settings) {
+  Json json = {{"program", "thin"}, {"version", kVersion}};
+  for (const auto& [name, value] : settings.resolved) json["configuration"][name] = value;
+  json["truth_deviation_k"] = cycles.truth_deviation_k;
+  json["variants"] = Json::array();
+  for (const Variant& variant : settings.variants) json["variants"].push_back(variant_json(variant));
+  json["sets"] = Json::array();
+  for (const CycledSet& set : cycles.sets)
+    json["sets"].push_back(
+        {{"set", set.label},
+         {"retained", mean_of(set.retained)},
+         {"variogram_length_km", mean_of(set.length_km)},
+         {"analysis_error_k", set.analysis_error_k},
+         {"background_error_k", set.background_error_k},
+         {"anomaly_correlation", {{"northern", set.northern}, {"southern", set.southern}, {"global", set.global}}}});
+  json["failures"] = failures_json(cycles.failures, settings.variants);
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string cycles_table(const TwinCycles& cycles, const TwinSettings& settings) {
+  const auto block = static_cast<std::size_t>(std::max(48 / settings.cycle.hours, 1));  // two days
+  std::size_t width = 14;
+  for (const Variant& variant : settings.variants) width = std::max(width, variant.label.size());
+  std::string table = fmt::format("{:<{}} {:>9} {:>18} {:>18} {:>9} {:>34}\n", "set", width, "retained", "analysis, K",
+                                  "background, K", "L, km", "anomaly correlation by day");
+  for (const CycledSet& set : cycles.sets) {
+    if (set.analysis_error_k.empty()) continue;
+    table += fmt::format("{:<{}} {:>9.0f} {:>18} {:>18} {:>9.0f} ", set.label, width, mean_of(set.retained),
+                         with_interval(block_means(set.analysis_error_k, block), 1, 4),
+                         with_interval(block_means(set.background_error_k, block), 1, 4), mean_of(set.length_km));
+    for (const auto& day : set.global) table += fmt::format(" {:.4f}", mean_of(day));
+    table += "\n";
+  }
+  table += fmt::format(
+      "errors: root mean square over the Earth, the truth's anomaly being {:.2f} K; +-: 95 % over blocks of two days; "
+      "L: by "
+      "the variogram of the innovations; the anomaly correlation is global, lead times in days from 0\n",
+      cycles.truth_deviation_k);
+  return table;
 }
 
 std::string twin_table(const Twin& twin, const TwinSettings& settings) {

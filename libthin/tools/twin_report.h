@@ -11,4 +11,7 @@ namespace thin {
 std::string twin_json(const Twin& twin, const TwinSettings& settings);
 std::string twin_table(const Twin& twin, const TwinSettings& settings);
 
+std::string cycles_json(const TwinCycles& cycles, const TwinSettings& settings);
+std::string cycles_table(const TwinCycles& cycles, const TwinSettings& settings);
+
 }  // namespace thin

@@ -13,10 +13,12 @@ Result<TwinSettings> read_twin_settings(const std::string& path) {
 Result<TwinSettings> read_twin_settings(Configuration configuration) {
   TwinSettings settings;
   const std::size_t variants = configuration.list_size("twin.variant");
-  OptionTable twin, run;
+  OptionTable twin, cycle, run;
   settings.twin.declare(twin);
   configuration.read_section("twin", twin);
   settings.variants = read_variants(configuration, "twin", variants, settings.twin.methods, std::nullopt);
+  settings.cycle.declare(cycle);
+  configuration.read_section("cycle", cycle);
   declare_run_options(run, settings.threads);
   configuration.read_section("run", run);
   for (const char* section :
@@ -27,6 +29,8 @@ Result<TwinSettings> read_twin_settings(Configuration configuration) {
   if (Result<void> good = configuration.finish(); !good) return good.error();
   for (const Option& option : twin.options())
     settings.resolved.emplace_back("twin." + option.name, option.current_value());
+  for (const Option& option : cycle.options())
+    settings.resolved.emplace_back("cycle." + option.name, option.current_value());
   return settings;
 }
 

@@ -1,12 +1,13 @@
 #pragma once
 
-// The configuration of `thin twin`: [twin] with its [[twin.variant]]s, and [run]. Other sections are left to the other
-// commands.
+// The configuration of `thin twin`: [twin] with its [[twin.variant]]s, [cycle], and [run]. Other sections are left to
+// the other commands.
 
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "libthin/analysis/twin_cycle.h"
 #include "libthin/analysis/twin_experiment.h"
 #include "libthin/tools/variants.h"
 
@@ -14,6 +15,7 @@ namespace thin {
 
 struct TwinSettings {
   TwinOptions twin;
+  TwinCycleOptions cycle;
   std::vector<Variant> variants;
   int threads = 0;
   std::vector<std::pair<std::string, std::string>> resolved;  // every option with the value in force
