@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libthin/estimation/analysis_target.h"
 #include "libthin/estimation/lanes.h"
 #include "libthin/estimation/neighbourhood_table.h"
 #include "libthin/foundation/memory.h"
@@ -20,17 +21,6 @@ constexpr double kLeastMargin = 1e-3;
 // One channel needs two numbers for each observation, g and s; more go in whole groups of lanes.
 std::size_t row_width(std::size_t channels) {
   return channels == 1 ? 2 : padded(channels + 1);
-}
-
-Places places_with(const Places& places, std::span<const std::uint32_t> chosen) {
-  Places result;
-  result.dimension = places.dimension;
-  for (const std::uint32_t i : chosen) {
-    const auto place = places.of(i);
-    result.coordinates.insert(result.coordinates.end(), place.begin(), place.end());
-    if (!places.group.empty()) result.group.push_back(places.group[i]);
-  }
-  return result;
 }
 
 // The pairs of one evaluation point, and what changes there.
@@ -95,7 +85,7 @@ LocalAnalysis::LocalAnalysis(const Places& observations, std::span<const double>
       reached_(observations.size()),
       work_(observations.size(), 0.0) {
   NeighbourhoodTable table =
-      std::move(*neighbourhood_rows(places_with(places_, points_), places_, model_.covariance.filter()));
+      std::move(*neighbourhood_rows(places_among(places_, points_), places_, model_.covariance.filter()));
   row_begin_ = std::move(table.row_begin);
   pair_observation_ = std::move(table.observation);
   pair_covariance_ = std::move(table.weight);
