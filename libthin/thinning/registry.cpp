@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 
+#include "libthin/thinning/analysis_thinning.h"
 #include "libthin/thinning/box.h"
 #include "libthin/thinning/eea.h"
 #include "libthin/thinning/gaussian.h"
@@ -30,6 +31,8 @@ std::span<const MethodEntry> thinning_methods() {
   using Way = Eea::Direction;
   using Points = Eea::EvaluationPoints;
   static const std::array entries = {
+      MethodEntry{"analysis", "insertion of what brings the analysis nearest to that from all, then exchange",
+                  "sequential optimal interpolation; docs/methods.md", make<AnalysisThinning>},
       MethodEntry{"box", "one observation per equal-area box or GME cell, the nearest to its centre",
                   "Purser et al. 2000; box thinning as centres use it", make<Box>},
       MethodEntry{"eea", "greedy removal of what the Gaussian estimate at the observations misses least",

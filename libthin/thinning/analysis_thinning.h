@@ -1,0 +1,31 @@
+#pragma once
+
+#include "libthin/estimation/local_analysis.h"
+#include "libthin/thinning/thinning_method.h"
+
+namespace thin {
+
+// Thinning for the analysis: the observations from which optimal interpolation makes of the innovations what it would
+// make of all. Greedy insertion of the observation that lowers J most (estimation/local_analysis.h), each step the true
+// minimum, then exchange while J falls. J = sum over evaluation points of |T - a|² + lambda sigma² C: the misfit of the
+// analysis from the retained to the estimate from all, and where the values say nothing its uncertainty.
+// Observations that their neighbours contradict are left out before.
+class AnalysisThinning : public ThinningMethod {
+ public:
+  enum class LengthScales { automatic, one, two };
+
+  Traits traits() const override { return {}; }
+  void declare_options(OptionTable& table) override;
+  Result<Choice> choose(const ThinningInput& input) const override;
+
+ private:
+  std::optional<double> correlation_length_km_;
+  LengthScales length_scales_ = LengthScales::automatic;
+  double error_ratio_ = 0.4;
+  double coverage_weight_ = 0.2;
+  double gross_error_check_ = 3;
+  bool exchange_ = true;
+  std::optional<double> evaluation_spacing_km_;
+};
+
+}  // namespace thin
