@@ -127,7 +127,13 @@ std::vector<std::vector<double>> OptimalInterpolation::solve(std::span<const dou
     squared = products(residual, residual, channels);
     for (std::size_t c = 0; c < channels; ++c) turn[c] = step[c] > 0 ? squared[c] / before[c] : 0;
     for (std::size_t i = 0; i < direction.size(); ++i) direction[i] = residual[i] + turn[i % channels] * direction[i];
-    for (Shifted& system : systems) advance(system, residual, step, step_before, turn, turn_before);
+    for (Shifted& system : systems) {
+      // One whose own residual is small enough stands still: its zeta would fall until nothing is left of it.
+      std::vector<double> own = step;
+      for (std::size_t c = 0; c < channels; ++c)
+        if (system.zeta[c] * system.zeta[c] * before[c] <= goal[c]) own[c] = 0;
+      advance(system, residual, own, step_before, turn, turn_before);
+    }
     for (std::size_t c = 0; c < channels; ++c)
       if (step[c] > 0) step_before[c] = step[c], turn_before[c] = turn[c];
   }

@@ -18,9 +18,10 @@ namespace {
 using Fields = std::vector<std::vector<double>>;  // of each channel; of several sets one after another
 
 constexpr double kStepHours = 2;
-constexpr int kTruthSpinUpDays = 15;
+constexpr int kTruthSpinUpDays = 25;
 constexpr double kPatternLengthKm = 1500;
-constexpr double kPatternK = 4, kPoleToEquatorK = 20;
+constexpr double kPatternK = 8, kPoleToEquatorK = 40;
+constexpr double kRelaxationHours = 20 * 24;
 constexpr double kLeastBackgroundShare = 0.25;  // of the observation error
 
 class CycledExperiment {
@@ -38,6 +39,7 @@ class CycledExperiment {
         forecast_wind_(wind_.with_errors(options.wind_error, seed_ + 2)) {
     observations_.window_minutes = options.hours * 60;
     observations_.step = options.observation_step;
+    relaxation_.time_h = kRelaxationHours;
     for (int c = 0; c < observations_.channels; ++c) {
       const std::vector<double> pattern =
           GaussianField(seed_ + 11 + static_cast<std::uint64_t>(c), kPatternLengthKm).at(positions_km_);

@@ -84,7 +84,7 @@ TEST(TransportModel, WindIsTangentialAndFreeOfDivergence) {
     EXPECT_NEAR(v.x * d.x + v.y * d.y + v.z * d.z, 0, 1e-12);
     EXPECT_LT(std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z) * kEarthRadiusKm / 3.6, 160);  // m/s
     // Of v(x) continued along the radius: the divergence in space is that on the sphere.
-    constexpr double h = 1e-4;
+    constexpr double h = 1e-5;
     const auto at = [&](double x, double y, double z) { return wind.at(30).velocity({d.x + x, d.y + y, d.z + z}); };
     const double divergence =
         (at(h, 0, 0).x - at(-h, 0, 0).x + at(0, h, 0).y - at(0, -h, 0).y + at(0, 0, h).z - at(0, 0, -h).z) / (2 * h);

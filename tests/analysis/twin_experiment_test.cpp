@@ -102,7 +102,9 @@ TEST(TwinExperiment, ErrorsAreAsAskedFor) {
     if (!made->errors.is_outlier[i]) square += std::pow(made->errors.errors_k[2 * i], 2), ++count;
   EXPECT_NEAR(std::sqrt(square / count), options.observations.total_error_k(), 0.05);
   for (std::size_t i = 0; i < n; ++i)
-    if (made->errors.is_outlier[i]) EXPECT_GT(std::abs(made->errors.errors_k[2 * i]), 2);
+    if (made->errors.is_outlier[i]) {
+      EXPECT_GT(std::abs(made->errors.errors_k[2 * i]), 2);
+    }
   EXPECT_GT(made->targets.size(), 100U);
 }
 
