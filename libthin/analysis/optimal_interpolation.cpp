@@ -11,7 +11,6 @@
 namespace thin {
 namespace {
 
-constexpr double kTolerance = 1e-7;
 constexpr int kMostIterations = 2000;
 const double kHalfWidth = std::sqrt(10.0 / 3);  // in lengths: the curvature at 0 is that of the Gaussian
 
@@ -102,7 +101,8 @@ struct OptimalInterpolation::Shifted {
 
 // Conjugate gradients for all channels and ratios at one time: one pass over the matrix serves all.
 std::vector<std::vector<double>> OptimalInterpolation::solve(std::span<const double> values, std::size_t channels,
-                                                             std::span<const double> error_ratios) const {
+                                                             std::span<const double> error_ratios,
+                                                             double tolerance) const {
   const double least = *std::min_element(error_ratios.begin(), error_ratios.end());
   std::vector<Shifted> systems;
   for (const double ratio : error_ratios)
@@ -111,7 +111,7 @@ std::vector<std::vector<double>> OptimalInterpolation::solve(std::span<const dou
                        std::vector<double>(channels, 1)});
   std::vector<double> residual(values.begin(), values.end()), direction = residual, image;
   std::vector<double> squared = products(residual, residual, channels), goal = squared;
-  for (double& each : goal) each *= kTolerance * kTolerance;
+  for (double& each : goal) each *= tolerance * tolerance;
   std::vector<double> step_before(channels, 1), turn_before(channels, 0);
   for (int iteration = 0; iteration < kMostIterations; ++iteration) {
     bool done = true;
@@ -167,9 +167,10 @@ void OptimalInterpolation::advance(Shifted& system, std::span<const double> resi
 }
 
 std::vector<std::vector<double>> OptimalInterpolation::estimates(std::span<const double> values, std::size_t channels,
-                                                                 std::span<const double> error_ratios) const {
+                                                                 std::span<const double> error_ratios,
+                                                                 double tolerance) const {
   assert(values.size() == (among_observations_.begin.size() - 1) * channels);
-  std::vector<std::vector<double>> results = solve(values, channels, error_ratios);
+  std::vector<std::vector<double>> results = solve(values, channels, error_ratios, tolerance);
   for (std::vector<double>& each : results) {
     const std::vector<double> solution = std::move(each);
     multiply(at_targets_, solution, channels, each);

@@ -31,7 +31,7 @@ class OptimalInterpolation {
   // the Krylov space: Jegerlehner 1996, hep-lat/9612014). The same bits for any number of threads.
   // REQUIRES: every ratio > 0
   std::vector<std::vector<double>> estimates(std::span<const double> values, std::size_t channels,
-                                             std::span<const double> error_ratios) const;
+                                             std::span<const double> error_ratios, double tolerance = 1e-7) const;
   std::vector<double> estimate(std::span<const double> values, std::size_t channels, double error_ratio) const;
 
  private:
@@ -46,7 +46,7 @@ class OptimalInterpolation {
   static Rows rows_between(std::span<const Vector3> from, std::span<const Vector3> to, double length_km);
   static void multiply(const Rows& rows, std::span<const double> x, std::size_t channels, std::vector<double>& product);
   std::vector<std::vector<double>> solve(std::span<const double> values, std::size_t channels,
-                                         std::span<const double> error_ratios) const;
+                                         std::span<const double> error_ratios, double tolerance) const;
 
   static void advance(Shifted& system, std::span<const double> residual, std::span<const double> step,
                       std::span<const double> step_before, std::span<const double> turn,

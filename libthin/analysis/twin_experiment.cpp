@@ -16,6 +16,7 @@ namespace thin {
 namespace {
 
 constexpr int kTargetLevel = 6;
+constexpr double kTolerance = 1e-5;  // of the interpolation
 constexpr double kTargetReachKm = 100;
 constexpr double kActivityLengthKm = 1200;
 constexpr double kCommonVariance = 0.5;               // of the background errors of several channels
@@ -94,7 +95,7 @@ class Scorer {
     double outliers = 0;
     for (const std::uint32_t i : choice.retained) outliers += case_.errors.is_outlier[i];
     const OptimalInterpolation interpolation(chosen.position_km, case_.targets, options_.length_km());
-    const auto increments = interpolation.estimates(values, 2 * channels, ratios_);
+    const auto increments = interpolation.estimates(values, 2 * channels, ratios_, kTolerance);
     score.mean_squared_k2.resize(ratios_.size());
     score.with_fresh_errors.resize(ratios_.size());
     for (std::size_t f = 0; f < ratios_.size(); ++f) {

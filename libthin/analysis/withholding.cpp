@@ -17,6 +17,7 @@ namespace {
 using Progress = std::function<void(const std::string&)>;
 
 constexpr double kManyOutliers = 10;       // excess kurtosis from which on the figures say little
+constexpr double kTolerance = 1e-4;        // of the interpolation: its error is far below the noise of the withheld
 constexpr double kLeastExplained = 0.005;  // below, a share of it is noise over noise
 
 // One draw: what the methods see, and what they don't.
@@ -98,7 +99,7 @@ std::vector<Prediction> predict(const Draw& draw, const ObservationSet& chosen,
   std::vector<double> half_sums(2 * k, 0);
   for (std::size_t l = 0; l < options.lengths_km.size(); ++l) {
     const OptimalInterpolation interpolation(chosen.position_km, draw.places, options.lengths_km[l]);
-    const auto estimates = interpolation.estimates(values, k, options.error_ratios);
+    const auto estimates = interpolation.estimates(values, k, options.error_ratios, kTolerance);
     for (std::size_t r = 0; r < ratios; ++r)
       for (std::size_t i = 0; i < draw.places.size(); ++i)
         for (std::size_t c = 0; c < k; ++c) {
