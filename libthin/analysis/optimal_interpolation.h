@@ -27,8 +27,8 @@ class OptimalInterpolation {
   OptimalInterpolation(std::span<const Vector3> observations_km, std::span<const Vector3> targets_km, double length_km);
 
   // values: n x channels. For each ratio m x channels: the analysis less the background at the targets; 0 where no
-  // observation is in reach. By conjugate gradients to 1e-7 of the values' length, for all ratios at once (they share
-  // the Krylov space: Jegerlehner 1996, hep-lat/9612014). The same bits for any number of threads.
+  // observation is in reach. By conjugate gradients, to `tolerance` of the values' length, for all ratios at once (they
+  // share the Krylov space: Jegerlehner 1996, hep-lat/9612014). The same bits for any number of threads.
   // REQUIRES: every ratio > 0
   std::vector<std::vector<double>> estimates(std::span<const double> values, std::size_t channels,
                                              std::span<const double> error_ratios, double tolerance = 1e-7) const;
