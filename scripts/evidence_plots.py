@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
 
 from evaluation_plots import save, thousands  # noqa: E402
 
-COLOURS = ["#1f5fa8", "#d1741a", "#2a9d8f", "#a3262e", "#c77dba", "#7a9a01", "#4c4c9d", "#8c564b", "#00798c", "#d4b106",
+COLOURS = ["#1f5fa8", "#5b8c5a", "#2a9d8f", "#6d4c41", "#c77dba", "#7a9a01", "#4c4c9d", "#8c564b", "#00798c", "#d4b106",
            "#e07a9a", "#5c8d89", "#444444", "#b08d57", "#777777"]
 
 
@@ -15,7 +15,9 @@ def style(label, place):
     """A set has its look in every picture: black for those to compare with, thick for the product's own method."""
     if label in ("farthest_point", "random", "all"):
         return {"color": "#222222", "linestyle": {"farthest_point": "--", "random": ":", "all": "-."}[label], "linewidth": 1.6}
-    return {"color": COLOURS[place % len(COLOURS)], "linewidth": 2.4 if label.startswith("analysis") else 1.3,
+    if label.startswith("analysis"):
+        return {"color": "#d00000" if label == "analysis" else "#ff8c1a", "linewidth": 2.6, "marker": "o", "markersize": 5}
+    return {"color": COLOURS[place % len(COLOURS)], "linewidth": 1.3,
             "marker": "os^Dv<>P"[place % 8], "markersize": 4.5}
 
 

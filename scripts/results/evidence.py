@@ -34,8 +34,8 @@ REAL_LENGTHS = {(250, 500): [200, 300, 450, 650, 900], (1000, 2000): [125, 200, 
 DRAWS = 2 if QUICK else 4
 TOGETHER = [9, 12] if QUICK else [6, 7, 9, 10, 11, 12, 13, 14]  # nearly every location has them
 TWIN_COUNTS = [400, 1089]
-CASES = 3 if QUICK else 6
-DAYS = 2 if QUICK else 21
+CASES = 3 if QUICK else 5
+DAYS = 2 if QUICK else 14
 UNIFORM = "farthest_point"
 T_975 = [12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131]
 
@@ -150,6 +150,7 @@ class Withheld:
 
     def __init__(self, runs):
         self.json = runs[0]
+        self.retained = {(s["set"], s["asked"]): s["retained"] for one in runs for s in one["sets"]}  # by thinning
         self.scores = {}
         for one in runs:
             for s in one["scores"]:
@@ -164,6 +165,13 @@ class Withheld:
     def share(self, label, count, by, predicted):
         score = self.scores.get((label, None if label == "all" else count, by, predicted))
         return score and score["share_of_all"]
+
+    def sizes(self, label, count):
+        return self.retained[(label, count)]
+
+    def values(self, label, count, by, predicted):
+        """Root mean square of the retained values over that of all."""
+        return self.scores[(label, count, by, predicted)]["retained_rms"]
 
     def rms(self, label, count, by, predicted):
         score = self.scores.get((label, None if label == "all" else count, by, predicted))
@@ -209,6 +217,18 @@ def mean_share(cells, label, count):
     return [mean(draw) for draw in zip(*lists)]
 
 
+def is_as_asked(label, count, runs):
+    """Whether the set has as many as asked for, within 5 %: what can't be told a number may miss it."""
+    return all(abs(size - count) <= 0.05 * count for one in runs for size in one.sizes(label, count))
+
+
+def sized(label, count, runs):
+    if is_as_asked(label, count, runs):
+        return label
+    sizes = [size for one in runs for size in one.sizes(label, count)]
+    return f"{label} ({min(sizes):,.0f} to {max(sizes):,.0f} retained)" if max(sizes) - min(sizes) >= 1 else f"{label} ({sizes[0]:,.0f} retained)"
+
+
 def with_width(numbers, scale=1.0, decimals=1):
     if numbers is None or any(x is None for x in numbers):
         return "-"
@@ -227,27 +247,33 @@ def real_part(have):
         "optimal interpolation from what is retained of the others. The mean of each channel of the others is taken off before. Length and error "
         "ratio are each method's best, chosen on the other half of the withheld, so that no method is judged with numbers that were fitted to "
         "what it is judged on. Intervals (95 %) are over draws: they hold for other choices of the withheld on that day, not for other days."
-        + (f" Channels {listed(refused)} have no innovations that passed quality control, or too few, in this file." if refused else ""), "")
+        + (f" No innovations that passed quality control, or too few, are in this file of {'channel' if len(refused) == 1 else 'channels'} {listed(refused)}." if refused else ""), "")
     facts = [(f["channel"], f) for one in [together, *alone.values()] for f in one.json["observations"]["channels"]]
     table(["channel"] + [str(channel) for channel, _ in sorted(facts, key=lambda x: x[0])],
           [["standard deviation, K"] + [f"{f['standard_deviation_k']:.2f}" for _, f in sorted(facts, key=lambda x: x[0])],
            ["mean, K"] + [f"{f['mean_k']:.2f}" for _, f in sorted(facts, key=lambda x: x[0])],
            ["excess kurtosis"] + [f"{f['excess_kurtosis']:.1f}" for _, f in sorted(facts, key=lambda x: x[0])],
            ["all: RMS left / deviation"] + [f"{mean(one.rms('all', None, by, channel)):.3f}" for channel, one, by in cells]])
-    say(f"Each channel thinned and predicted alone: root mean square of what remains over that of the withheld, and in brackets the explained "
+    detail = (f"Each channel thinned and predicted alone: root mean square of what remains over that of the withheld, and in brackets the explained "
         "variance as a share of what all observations explain, per cent. The last columns: the mean of the shares over these channels; and "
-        f"channels {listed(TOGETHER)} thinned jointly, in units of their standard deviations, the mean over them.", "")
+        f"channels {listed(TOGETHER)} thinned jointly, in units of their standard deviations, the mean over them.")
+    say("### All numbers", "", "Explained variance as a share of what all explain, per cent: each channel thinned alone, mean over the channels / all thinned jointly.", "")
+    table(["set"] + [f"{count:,}" for count in REAL_COUNTS],
+          [[label] + [f"{with_width(mean_share(cells, label, count), 100)} / {with_width(together.share(label, count, None, None), 100)}"
+                      + ("" if is_as_asked(label, count, [together, *alone.values()]) else " (*)") for count in REAL_COUNTS] for label in shown])
+    say("(*): not as many as asked for; how many stands below.", "")
+    real_picture(cells, together, shown)
+    real_conclusions(cells, together, shown, labels)
+    say("### Channel by channel", "", detail, "")
     for count in REAL_COUNTS:
-        say(f"### {count:,} retained", "")
+        say(f"{count:,} retained:", "")
         rows = []
         for label in shown:
-            row = [label]
+            row = [sized(label, count, [together, *alone.values()])]
             for channel, one, by in cells:
                 row.append(f"{mean(one.rms(label, count, by, channel)):.3f} ({with_width(one.share(label, count, by, channel), 100, 0)})")
             rows.append(row + [with_width(mean_share(cells, label, count), 100), with_width(together.share(label, count, None, None), 100)])
         table(["set"] + [f"channel {channel}" for channel, _, _ in cells] + ["mean", "jointly"], rows)
-    real_picture(cells, together, shown)
-    real_conclusions(cells, together, shown, labels)
 
 
 def real_picture(cells, together, shown):
@@ -268,15 +294,23 @@ def real_conclusions(cells, together, shown, labels):
     for title, share in (("Each channel alone, mean over channels", lambda label, count: mean_share(cells, label, count)),
                          ("Jointly", lambda label, count: together.share(label, count, None, None))):
         for count in REAL_COUNTS:
-            ranking = sorted(shown, key=lambda label: -mean(share(label, count)))
+            fair = [label for label in shown if is_as_asked(label, count, [one for _, one, _ in cells])]
+            ranking = sorted(fair, key=lambda label: -mean(share(label, count)))
             best, uniform = ranking[0], share(UNIFORM, count)
+            subset = next(label for label in ranking if label != "superob")
             beyond = lambda label: [100 * (a - b) for a, b in zip(share(label, count), uniform)]  # noqa: E731
             equal = [label for label in ranking[1:] if surely([a - b for a, b in zip(share(best, count), share(label, count))]) < 1]
-            worse = [label for label in labels if label in shown and surely(beyond(label)) < 0]
+            worse = [label for label in labels if label in fair and surely(beyond(label)) < 0]
             say(f"- {title}, {count:,}: best is {best} with {with_width(share(best, count), 100)} %, {with_width(beyond(best))} points more than the "
                 f"even set ({100 * mean(uniform):.1f} %)"
+                + (f"; best that is a subset: {subset} ({with_width(share(subset, count), 100)} %)" if subset != best else "")
                 + (f"; not surely behind it: {listed(equal[:4])}" + (" and others" if len(equal) > 4 else "") if equal else "")
                 + (f"; surely worse than even: {listed(worse)}" if worse else "; none is surely worse than even") + ".")
+    count = REAL_COUNTS[1]
+    values = {label: mean([mean(one.values(label, count, by, channel)) for channel, one, by in cells]) for label in shown}
+    say(f"- Values of the {count} retained, root mean square over that of all, a channel alone, mean over channels: "
+        + listed([f"{label} {value:.2f}" for label, value in values.items()]) + ". What is not 1 is chosen by the values, errors and all.")
+    say("- Sets that could not be made as large as asked for, within 5 %, are in the tables with their size and not in the ranking.")
     hurt = []
     for count in REAL_COUNTS:
         for channel, one, by in cells:
@@ -433,7 +467,7 @@ def twin_conclusions(runs, labels):
 
 def cycled_part(have):
     variants = Variants("twin", have)
-    variants.add("box").add("stepwise").add("superob").add("top_down_clustering").add("eea", "eea, h = 150", bandwidth_km=150)
+    variants.add("box").add("stepwise").add("superob").add("top_down_clustering")
     variants.add("eea", "eea + exchange, h = 150", bandwidth_km=150, refine="exchange")
     variants.add("analysis").add("analysis", "analysis, L = 400", correlation_length_km=400)
     spin_up = 12
