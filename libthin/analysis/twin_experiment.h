@@ -28,7 +28,7 @@ struct TwinOptions {
   double background_length_km = 250;
   double flow_dependence = 0.8;
   std::optional<double> assimilation_length_km;
-  std::vector<double> error_factors = {0.5, 0.7, 1, 1.4, 2, 2.8, 4};
+  std::vector<double> error_factors = {0.25, 0.35, 0.5, 0.7, 1, 1.4, 2, 2.8};
 
   void declare(OptionTable& table);
   double length_km() const { return assimilation_length_km.value_or(background_length_km); }

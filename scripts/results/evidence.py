@@ -381,7 +381,8 @@ def twin_part(have):
     labels = []
     for name, _, options, length in SCENARIOS:
         variants = twin_variants(have, length, wrong=name == "white")
-        result = run("twin", f"twin-{name}", section("twin", counts=TWIN_COUNTS, cases=CASES, window_minutes=60, step=2, background_length_km=LENGTH, **options) + variants.text)
+        result = run("twin", f"twin-{name}", section("twin", counts=TWIN_COUNTS, cases=CASES, window_minutes=60, step=2, background_length_km=LENGTH,
+                                                       error_factors=[0.25, 0.35, 0.5, 0.7, 1, 1.4, 2, 2.8], **options) + variants.text)
         if result:
             runs[name] = TwinRun(result)
             labels += [label for label in variants.labels if label not in labels]
