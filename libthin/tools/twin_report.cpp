@@ -7,19 +7,13 @@
 
 #include "libthin/analysis/confidence.h"
 #include "libthin/foundation/version.h"
+#include "libthin/tools/interval_text.h"
 #include "libthin/tools/variant_json.h"
 
 namespace thin {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string with_interval(const std::vector<double>& numbers, double scale, int decimals) {
-  std::vector<double> scaled;
-  for (const double number : numbers) scaled.push_back(scale * number);
-  const MeanWithInterval mean = mean_with_interval(scaled);
-  return fmt::format("{:.{}f} +- {:.{}f}", mean.mean, decimals, mean.half_width, decimals);
-}
 
 // Per cent less than the uniform set of the same number has; nothing where there is none.
 std::vector<double> gains(const TwinScore& score, const Twin& twin) {

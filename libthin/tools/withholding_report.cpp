@@ -8,6 +8,7 @@
 
 #include "libthin/analysis/confidence.h"
 #include "libthin/foundation/version.h"
+#include "libthin/tools/interval_text.h"
 #include "libthin/tools/variant_json.h"
 
 namespace thin {
@@ -38,15 +39,6 @@ Json score_json(const WithheldScore& score, const WithheldSet& set, const Observ
           {"retained_rms", numbers_json(score.retained_rms)},
           {"length_km", numbers_json(score.length_km)},
           {"error_ratio", numbers_json(score.error_ratio)}};
-}
-
-std::string with_interval(const std::vector<double>& numbers, double scale, int decimals) {
-  std::vector<double> finite;
-  for (const double number : numbers)
-    if (std::isfinite(number)) finite.push_back(scale * number);
-  if (finite.empty()) return "-";
-  const MeanWithInterval mean = mean_with_interval(finite);
-  return fmt::format("{:.{}f} +- {:.{}f}", mean.mean, decimals, mean.half_width, decimals);
 }
 
 }  // namespace
