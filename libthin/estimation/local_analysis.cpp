@@ -23,6 +23,12 @@ std::size_t row_width(std::size_t channels) {
   return channels == 1 ? 2 : padded(channels + 1);
 }
 
+// The observations reached so far; each once.
+struct Touched {
+  std::uint32_t* observations;  // room for one more than all
+  std::size_t count;
+};
+
 // The pairs of one evaluation point, and what changes there.
 struct Row {
   const std::uint32_t* observation;
@@ -35,13 +41,17 @@ struct Row {
 
 // Moves g and s of the row's observations from the old covariances and misfit to the new ones.
 template <std::size_t Width, class Reached>
-inline __attribute__((always_inline)) void update_row(const Row& row, const Reached* reached, double* sums,
-                                                      std::size_t channels, std::size_t row_width) {
+inline __attribute__((always_inline)) void update_row(const Row& row, Reached* reached, std::uint32_t step,
+                                                      double* sums, std::size_t channels, std::size_t row_width,
+                                                      Touched& touched) {
   const std::size_t width = Width ? Width : row_width;
   for (std::size_t i = 0; i < row.size; ++i) {
     const std::uint32_t p = row.observation[i];
     const double before = row.covariance[i];
     const double after = before - row.step * reached[p].column;
+    touched.observations[touched.count] = p;
+    touched.count += reached[p].at_step != step;
+    reached[p].at_step = step;
     row.covariance[i] = after;
     double* sum = sums + p * width;
     if constexpr (Width == 2) {
@@ -56,14 +66,14 @@ inline __attribute__((always_inline)) void update_row(const Row& row, const Reac
 }
 
 template <class Reached>
-THIN_VECTOR_CLONES void update_any_row(const Row& row, const Reached* reached, double* sums, std::size_t channels,
-                                       std::size_t width) {
+THIN_VECTOR_CLONES void update_any_row(const Row& row, Reached* reached, std::uint32_t step, double* sums,
+                                       std::size_t channels, std::size_t width, Touched& touched) {
   if (width == 2)
-    update_row<2>(row, reached, sums, channels, width);
+    update_row<2>(row, reached, step, sums, channels, width, touched);
   else if (width == 4)
-    update_row<4>(row, reached, sums, channels, width);
+    update_row<4>(row, reached, step, sums, channels, width, touched);
   else
-    update_row<0>(row, reached, sums, channels, width);
+    update_row<0>(row, reached, step, sums, channels, width, touched);
 }
 
 }  // namespace
@@ -83,7 +93,9 @@ LocalAnalysis::LocalAnalysis(const Places& observations, std::span<const double>
       increments_(observations.size(), 0.0),
       retained_(observations.size(), 0),
       reached_(observations.size()),
-      work_(observations.size(), 0.0) {
+      work_(observations.size(), 0.0),
+      touched_(observations.size() + 1),
+      last_changed_(kNone) {
   NeighbourhoodTable table =
       std::move(*neighbourhood_rows(places_among(places_, points_), places_, model_.covariance.filter()));
   row_begin_ = std::move(table.row_begin);
@@ -162,6 +174,7 @@ void LocalAnalysis::add_terms(std::uint32_t p) {
 
 void LocalAnalysis::update_rows(std::uint32_t p, double k) {
   std::vector<double> misfit(width_), misfit_to(width_);
+  Touched touched{touched_.data(), 0};
   for (std::size_t i = 0; i < near_.size(); ++i) {
     const std::uint32_t q = point_at_[near_[i]];
     if (q == kNone) continue;
@@ -173,14 +186,9 @@ void LocalAnalysis::update_rows(std::uint32_t p, double k) {
     const std::uint64_t begin = row_begin_[q], end = row_begin_[q + 1];
     update_any_row(
         Row{&pair_observation_[begin], &pair_covariance_[begin], end - begin, step, misfit.data(), misfit_to.data()},
-        reached_.data(), sums_.data(), channels_, width_);
-    for (std::uint64_t j = begin; j < end; ++j) {
-      Reached& reached = reached_[pair_observation_[j]];
-      if (reached.at_step == step_) continue;
-      reached.at_step = step_;
-      touched_.push_back(pair_observation_[j]);
-    }
+        reached_.data(), step_, sums_.data(), channels_, width_, touched);
   }
+  touched_count_ = touched.count;
 }
 
 void LocalAnalysis::update_observations(std::uint32_t p, double k) {
@@ -193,28 +201,37 @@ void LocalAnalysis::update_observations(std::uint32_t p, double k) {
     reached_[other].column = 0;
     if (reached_[other].at_step == step_) continue;
     reached_[other].at_step = step_;
-    touched_.push_back(other);
+    touched_[touched_count_++] = other;
   }
+}
+
+// Or forgets the last one, where p undoes its own change.
+void LocalAnalysis::keep_term(std::uint32_t p, double k) {
+  if (p == last_changed_) {
+    for (const std::uint32_t other : terms_.back().observations) terms_near_[other].pop_back();
+    terms_.pop_back();
+    last_changed_ = kNone;
+    return;
+  }
+  last_changed_ = p;
+  for (const std::uint32_t other : near_) terms_near_[other].push_back(static_cast<std::uint32_t>(terms_.size()));
+  const double root = std::sqrt(std::abs(k));
+  for (double& element : column_) element *= root;
+  terms_.push_back({near_, column_, k < 0 ? -1.0 : 1.0});
 }
 
 void LocalAnalysis::change_state(std::uint32_t p) {
   ++step_;
-  touched_.clear();
   fallen_.clear();
   find_column(p);
   const double k = gain_factor(p);
   for (std::size_t i = 0; i < near_.size(); ++i) reached_[near_[i]].column = column_[i];
   update_rows(p, k);
   update_observations(p, k);
-  if (!terms_near_.empty()) {
-    for (const std::uint32_t other : near_) terms_near_[other].push_back(static_cast<std::uint32_t>(terms_.size()));
-    const double root = std::sqrt(std::abs(k));
-    for (double& element : column_) element *= root;
-    terms_.push_back({near_, column_, k < 0 ? -1.0 : 1.0});
-  }
+  if (!terms_near_.empty()) keep_term(p, k);
   retained_[p] = !retained_[p];
   retained_count_ += retained_[p] ? 1 : -1;
-  for (const std::uint32_t other : touched_) {
+  for (const std::uint32_t other : std::span(touched_).first(touched_count_)) {
     const double before = increments_[other];
     increments_[other] = fresh_increment(other);
     if (increments_[other] < before) fallen_.push_back(other);

@@ -20,8 +20,8 @@
 // in the third digit or so; giving up what was retained last undoes it exactly.
 //
 // Time for each change: the pairs of the evaluation points within reach, and with evaluation points thinned as much
-// again for the terms. Memory: kBytesPerPair for each pair of evaluation point and observation, and for each
-// observation within reach of each one retained.
+// again for the terms. Memory: 12 bytes for each pair of evaluation point and observation, and 16 for each observation
+// within reach of each one retained (analysis_memory.h).
 
 #include <cstdint>
 #include <span>
@@ -42,8 +42,6 @@ struct AnalysisModel {
 
 class LocalAnalysis {
  public:
-  static constexpr std::uint64_t kBytesPerPair = 12;
-
   // values: n x channels, none missing. evaluation_points: indices of observations, ascending. targets: one row of
   // channels for each of them.
   LocalAnalysis(const Places& observations, std::span<const double> values, std::size_t channels,
@@ -91,6 +89,7 @@ class LocalAnalysis {
   };
 
   void find_column(std::uint32_t p);
+  void keep_term(std::uint32_t p, double k);
   void add_terms(std::uint32_t p);
   void update_rows(std::uint32_t p, double k);
   void update_observations(std::uint32_t p, double k);
@@ -124,10 +123,12 @@ class LocalAnalysis {
   std::vector<std::vector<std::uint32_t>> terms_near_;  // by observation that is none: the terms that reach it
 
   std::vector<Neighbour> neighbours_;
-  std::vector<std::uint32_t> near_;  // scratch: the observations within reach of the one that changes state
-  std::vector<double> column_;       // and its column there
-  std::vector<double> work_;         // n: of add_terms
-  std::vector<std::uint32_t> touched_, fallen_;
+  std::vector<std::uint32_t> near_;              // scratch: the observations within reach of the one that changes state
+  std::vector<double> column_;                   // and its column there
+  std::vector<double> work_;                     // n: of add_terms
+  std::vector<std::uint32_t> touched_, fallen_;  // by the last change; the first touched_count_ of touched_
+  std::size_t touched_count_ = 0;
+  std::uint32_t last_changed_;  // giving it up or taking it back would undo the last term
   std::uint32_t step_ = 0;
 };
 

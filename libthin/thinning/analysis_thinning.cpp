@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "libthin/estimation/analysis_memory.h"
 #include "libthin/estimation/analysis_target.h"
-#include "libthin/estimation/variogram.h"
 #include "libthin/foundation/memory.h"
+#include "libthin/thinning/analysis_safety.h"
 #include "libthin/thinning/greedy.h"
 #include "libthin/thinning/refinement.h"
 
@@ -16,6 +18,10 @@ namespace {
 
 // Where no variogram can be fitted: the scale of a short-range background's errors in temperature.
 constexpr double kDefaultLengthKm = 250;
+
+// What is taken for rho from a variogram: below, thinning would follow the noise; above, it prefers what exaggerates.
+constexpr double kLeastFittedRatio = 0.4;
+constexpr double kLargestFittedRatio = 1;
 
 // Evaluation points as near as this to each other say the same.
 constexpr double kSpacingInLengths = 0.5;
@@ -26,29 +32,32 @@ constexpr double kTargetBandwidthInLengths = 0.5;
 // What an exchange must gain, as a share of J.
 constexpr double kLeastExchangeGain = 1e-7;
 
-// What the method works on: the observations that are believed, of n x channels values.
-struct Believed {
-  std::vector<std::uint32_t> indices;  // in the input, ascending
-  Places places;
-  std::vector<double> values;
-  std::vector<double> priority;
-  std::vector<Vector3> positions_km;
-};
+// Of a channel over its observations, as preparation sees it: a mean of more than this times the standard deviation is
+// a bias, and makes the zero wrong that the analysis falls back to.
+constexpr double kLargeMean = 0.5;
 
-Believed believed(const ThinningInput& input, const std::vector<double>& values,
-                  const std::vector<std::uint8_t>& is_wrong) {
-  const auto channels = static_cast<std::ptrdiff_t>(input.channel_count());
-  Believed result;
-  for (std::uint32_t i = 0; i < input.size(); ++i) {
-    if (is_wrong[i]) continue;
-    result.indices.push_back(i);
-    const auto row = values.begin() + i * channels;
-    result.values.insert(result.values.end(), row, row + channels);
-    if (!input.priority.empty()) result.priority.push_back(input.priority[i]);
-    result.positions_km.push_back(input.observations.position_km[i]);
+// The values with such means taken off, for what was prepared as a whole may be biased in a category.
+std::vector<double> without_large_means(const ThinningInput& input, std::vector<std::string>& notes) {
+  const ObservationSet& set = input.observations;
+  const std::size_t channels = input.channel_count();
+  std::vector<double> values = input.values;
+  for (std::size_t c = 0; c < channels; ++c) {
+    double count = 0, sum = 0, squares = 0;
+    for (std::size_t i = 0; i < set.size(); ++i)
+      if (set.measures(i, c)) ++count, sum += values[i * channels + c];
+    if (count < 2) continue;
+    const double mean = sum / count;
+    for (std::size_t i = 0; i < set.size(); ++i)
+      if (set.measures(i, c)) squares += std::pow(values[i * channels + c] - mean, 2);
+    const double deviation = std::sqrt(squares / count);
+    if (deviation == 0 || std::abs(mean) <= kLargeMean * deviation) continue;
+    for (std::size_t i = 0; i < set.size(); ++i)
+      if (set.measures(i, c)) values[i * channels + c] -= mean;
+    notes.push_back(
+        fmt::format("channel {}: a mean of {:.2f} standard deviations, a bias, was taken off for the choice",
+                    set.channels[c], mean / deviation));
   }
-  result.places = places_among(input.places, result.indices);
-  return result;
+  return values;
 }
 
 // Mean squares, summed over channels.
@@ -59,6 +68,20 @@ double total_square(std::span<const double> values, std::size_t channels) {
 }
 
 }  // namespace
+
+AnalysisThinning::Believed::Believed(const ThinningInput& input, const std::vector<double>& all_values,
+                                     const std::vector<std::uint8_t>& is_wrong) {
+  const auto channels = static_cast<std::ptrdiff_t>(input.channel_count());
+  for (std::uint32_t i = 0; i < input.size(); ++i) {
+    if (is_wrong[i]) continue;
+    indices.push_back(i);
+    const auto row = all_values.begin() + i * channels;
+    values.insert(values.end(), row, row + channels);
+    if (!input.priority.empty()) priority.push_back(input.priority[i]);
+    positions_km.push_back(input.observations.position_km[i]);
+  }
+  places = places_among(input.places, indices);
+}
 
 void AnalysisThinning::declare_options(OptionTable& table) {
   table.add("correlation_length_km", correlation_length_km_,
@@ -76,7 +99,7 @@ void AnalysisThinning::declare_options(OptionTable& table) {
             {.minimum = 0.02,
              .maximum = 50,
              .explanation = "rho, the standard deviation of the observation error over that of the background error, "
-                            "the assimilation's own"});
+                            "the assimilation's own; unset: that of the variogram, from 0.4 to 1"});
   table.add("coverage_weight", coverage_weight_,
             {.minimum = 0,
              .maximum = 1000,
@@ -98,36 +121,78 @@ void AnalysisThinning::declare_options(OptionTable& table) {
              .explanation = "least spacing of the observations that J is taken at; 0: all; unset: L / 2"});
 }
 
+AnalysisThinning::Resolved AnalysisThinning::resolve(const ThinningInput& input, std::span<const double> values) const {
+  Resolved resolved;
+  resolved.variogram = fitted_variogram(input.places, values, input.channel_count());
+  const auto& variogram = resolved.variogram;
+  resolved.covariance.correlation_length_km =
+      correlation_length_km_.value_or(variogram ? variogram->correlation_length_km : kDefaultLengthKm);
+  resolved.covariance.two_scales =
+      length_scales_ == LengthScales::two || (length_scales_ == LengthScales::automatic && !correlation_length_km_);
+  const double fitted_ratio = variogram ? std::sqrt(variogram->nugget / variogram->sill) : kLeastFittedRatio;
+  resolved.error_ratio = error_ratio_.value_or(std::clamp(fitted_ratio, kLeastFittedRatio, kLargestFittedRatio));
+  return resolved;
+}
+
+std::vector<std::string> AnalysisThinning::notes(const Resolved& resolved, const ThinningInput& input,
+                                                 const Believed& all, std::size_t retain_count, double near) const {
+  const BackgroundCovariance& covariance = resolved.covariance;
+  std::vector<std::string> notes;
+  if (!correlation_length_km_ || !error_ratio_)
+    notes.push_back(fmt::format("the analysis is taken with L = {:.0f} km{}, error_ratio = {:.2f}",
+                                covariance.correlation_length_km, covariance.two_scales ? " (two scales)" : "",
+                                resolved.error_ratio));
+  const std::size_t contradicted = input.size() - all.indices.size();
+  if (contradicted > 0)
+    notes.push_back(fmt::format("{} observations contradicted by their neighbours were not retained", contradicted));
+  if (all.indices.empty()) return notes;
+  const double reach_in_lengths = covariance.radius_km() / covariance.correlation_length_km;
+  const double per_square_length = near / (std::numbers::pi * reach_in_lengths * reach_in_lengths);
+  const AnalysisCircumstances circumstances{
+      .variogram = resolved.variogram,
+      .correlation_length_km = covariance.correlation_length_km,
+      .length_is_given = correlation_length_km_.has_value(),
+      .error_ratio = resolved.error_ratio,
+      .ratio_is_given = error_ratio_.has_value(),
+      .retained_per_square_length =
+          per_square_length * static_cast<double>(retain_count) / static_cast<double>(all.indices.size()),
+      .gross_error_share = static_cast<double>(contradicted) / static_cast<double>(input.size()),
+      .values_are_innovations = input.observations.value_kind == ValueKind::innovation};
+  for (std::string& warning : analysis_warnings(circumstances)) notes.push_back(std::move(warning));
+  return notes;
+}
+
 Result<Choice> AnalysisThinning::choose(const ThinningInput& input) const {
   Choice choice;
   const std::size_t channels = input.channel_count();
-  const auto variogram = fitted_variogram(input.places, input.values, channels);
-  const double length_km =
-      correlation_length_km_.value_or(variogram ? variogram->correlation_length_km : kDefaultLengthKm);
-  const BackgroundCovariance covariance{
-      length_km,
-      length_scales_ == LengthScales::two || (length_scales_ == LengthScales::automatic && !correlation_length_km_)};
-  const GaussianFilter filter{kTargetBandwidthInLengths * length_km};
+  const std::vector<double> values = without_large_means(input, choice.notes);
+  const Resolved resolved = resolve(input, values);
+  const GaussianFilter filter{kTargetBandwidthInLengths * resolved.covariance.correlation_length_km};
   choice.bandwidth_km = filter.bandwidth_km;
 
   std::vector<std::uint8_t> is_wrong(input.size(), 0);
-  if (gross_error_check_ > 0 && channels > 0)
-    is_wrong = gross_errors(input.places, input.values, channels, filter, gross_error_check_);
-  const Believed all = believed(input, input.values, is_wrong);
+  if (gross_error_check_ > 0) is_wrong = gross_errors(input.places, values, channels, filter, gross_error_check_);
+  const Believed all(input, values, is_wrong);
+  const std::size_t retain_count = std::min(input.retain_count.value_or(all.indices.size()), all.indices.size());
 
-  const std::vector<std::uint32_t> points =
-      spread_places(all.places, evaluation_spacing_km_.value_or(kSpacingInLengths * length_km));
-  const std::vector<double> targets = filter_estimates(all.places, all.values, channels, points, filter);
-  const double signal = total_square(all.values, channels) / (1 + error_ratio_ * error_ratio_);
+  const double spacing_km =
+      evaluation_spacing_km_.value_or(kSpacingInLengths * resolved.covariance.correlation_length_km);
+  const std::vector<std::uint32_t> points = spread_places(all.places, spacing_km);
+  if (Result<void> fits =
+          expect_analysis_to_fit(all.places, points, resolved.covariance, retain_count, available_memory_bytes());
+      !fits)
+    return fits.error();
+  for (std::string& note :
+       notes(resolved, input, all, retain_count, observations_within_reach(all.places, points, resolved.covariance)))
+    choice.notes.push_back(std::move(note));
+
+  // Of the mean square of the values the signal has so much, the noise the rest.
+  const double signal = total_square(all.values, channels) / (1 + resolved.error_ratio * resolved.error_ratio);
   LocalAnalysis analysis(
-      all.places, all.values, channels, points, targets,
-      {.covariance = covariance, .error_ratio = error_ratio_, .coverage = coverage_weight_ * signal});
-
+      all.places, all.values, channels, points, filter_estimates(all.places, all.values, channels, points, filter),
+      {.covariance = resolved.covariance, .error_ratio = resolved.error_ratio, .coverage = coverage_weight_ * signal});
   const Separation separation(all.positions_km, input.min_separation_km);
-  insert_greedily(analysis,
-                  {.retain_count = std::min(input.retain_count.value_or(all.indices.size()), all.indices.size()),
-                   .priority = all.priority,
-                   .separation = &separation},
+  insert_greedily(analysis, {.retain_count = retain_count, .priority = all.priority, .separation = &separation},
                   Update::full);
   if (exchange_) exchange(analysis, {.priority = all.priority, .separation = &separation}, kLeastExchangeGain);
   for (const std::uint32_t i : analysis.retained()) choice.retained.push_back(all.indices[i]);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "libthin/estimation/local_analysis.h"
+#include "libthin/estimation/variogram.h"
 #include "libthin/thinning/thinning_method.h"
 
 namespace thin {
@@ -19,9 +20,32 @@ class AnalysisThinning : public ThinningMethod {
   Result<Choice> choose(const ThinningInput& input) const override;
 
  private:
+  // The options with what the observations say where they say nothing.
+  struct Resolved {
+    std::optional<Variogram> variogram;
+    BackgroundCovariance covariance;
+    double error_ratio;
+  };
+  // The observations that are not left out as wrong.
+  struct Believed {
+    std::vector<std::uint32_t> indices;  // in the input, ascending
+    Places places;
+    std::vector<double> values;
+    std::vector<double> priority;
+    std::vector<Vector3> positions_km;
+
+    Believed(const ThinningInput& input, const std::vector<double>& all_values,
+             const std::vector<std::uint8_t>& is_wrong);
+  };
+
+  Resolved resolve(const ThinningInput& input, std::span<const double> values) const;
+  // near: how many observations are within reach of one.
+  std::vector<std::string> notes(const Resolved& resolved, const ThinningInput& input, const Believed& all,
+                                 std::size_t retain_count, double near) const;
+
   std::optional<double> correlation_length_km_;
   LengthScales length_scales_ = LengthScales::automatic;
-  double error_ratio_ = 0.4;
+  std::optional<double> error_ratio_;
   double coverage_weight_ = 0.2;
   double gross_error_check_ = 3;
   bool exchange_ = true;

@@ -103,6 +103,7 @@ TEST(AnalysisThinning, ExchangeIsNoWorseThanWithoutIt) {
     const Thinner thinner = test::thinner("analysis", {{"retain_count", std::int64_t{60}},
                                                        {"correlation_length_km", kLengthKm},
                                                        {"gross_error_check", 0.0},
+                                                       {"error_ratio", kModel.error_ratio},
                                                        {"exchange", exchange}});
     LocalAnalysis analysis = scene.sparse();
     for (const std::uint32_t p : test::retained(thinner, scene.set)) analysis.change_state(p);
@@ -182,6 +183,25 @@ TEST(AnalysisThinning, HeedsPriorityAndSeparation) {
       }
   }
   EXPECT_GT(good, 40U);
+}
+
+TEST(AnalysisThinning, TakesOffABiasAndSaysSo) {
+  ObservationSet set = test::random_observations(500, 2, 10);
+  const Thinner thinner = test::thinner("analysis", {{"retain_count", std::int64_t{50}}});
+  const Result<Choice> plain = thinner.thin(set);
+  for (std::size_t i = 0; i < set.size(); ++i) set.values[2 * i + 1] += 64;  // exact, so that nothing else changes much
+  const Result<Choice> biased = thinner.thin(set);
+  ASSERT_TRUE(plain && biased);
+  const auto speaks_of_bias = [](const Choice& choice) {
+    return std::any_of(choice.notes.begin(), choice.notes.end(),
+                       [](const std::string& note) { return note.find("channel 2: a mean of") != std::string::npos; });
+  };
+  EXPECT_FALSE(speaks_of_bias(*plain));
+  EXPECT_TRUE(speaks_of_bias(*biased));
+  std::vector<std::uint32_t> both;
+  std::set_intersection(plain->retained.begin(), plain->retained.end(), biased->retained.begin(),
+                        biased->retained.end(), std::back_inserter(both));
+  EXPECT_GT(both.size(), 25U);
 }
 
 }  // namespace
