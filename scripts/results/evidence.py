@@ -119,16 +119,23 @@ def methods():
 
 
 class Variants:
-    """[[NAME.variant]]s; methods that this build does not have are left out."""
+    """[[NAME.variant]]s, in two groups that are run apart, so that work on the product's own method repeats its runs alone:
+    what a set is worth does not depend on which others are in the run. Methods that this build does not have are left out."""
 
     def __init__(self, name, have):
-        self.name, self.have, self.text, self.labels = name, have, "", []
+        self.name, self.have, self.texts, self.labels = name, have, {"others": "", "analysis": ""}, []
 
     def add(self, method, label=None, **options):
         if method in self.have:
             self.labels.append(label or method)
-            self.text += section(f"[{self.name}.variant]", method=method, label=label or method, **options)
+            group = "analysis" if method == "analysis" else "others"
+            self.texts[group] += section(f"[{self.name}.variant]", method=method, label=label or method, **options)
         return self
+
+    def runs(self, command, name, configuration, files=()):
+        """The JSON of each group; nothing where one is refused."""
+        runs = [run(command, f"{name}-{group}", configuration + text, files) for group, text in self.texts.items() if text]
+        return runs if all(runs) else None
 
 
 # ---- real innovations ------------------------------------------------------------------------------------------------
@@ -186,11 +193,11 @@ def real_runs(have):
     def measured(name, channels, kinds):
         runs = []
         for counts, lengths in REAL_LENGTHS.items():
-            runs.append(run("evaluate", f"{name}-{counts[-1]}", head + section("preparation", channels=channels) + section(
-                "evaluate", counts=counts, withhold=0.25, withhold_draws=DRAWS, withhold_channels=kinds, withhold_lengths_km=lengths)
-                + variants.text, [REAL]))
-            if not runs[-1] or runs[-1]["observations"]["thinned"] < 1.5 * REAL_COUNTS[-1]:
+            both = variants.runs("evaluate", f"{name}-{counts[-1]}", head + section("preparation", channels=channels) + section(
+                "evaluate", counts=counts, withhold=0.25, withhold_draws=DRAWS, withhold_channels=kinds, withhold_lengths_km=lengths), [REAL])
+            if not both or both[0]["observations"]["thinned"] < 1.5 * REAL_COUNTS[-1]:
                 return None
+            runs += both
         return Withheld(runs)
 
     together = measured("real-together", TOGETHER, "both")
@@ -357,9 +364,9 @@ SCENARIOS = [
 
 
 class TwinRun:
-    def __init__(self, run_json):
-        self.json = run_json
-        self.scores = {(s["set"], s["asked"]): s for s in run_json["scores"]}
+    def __init__(self, runs):
+        self.json = runs[0]
+        self.scores = {(s["set"], s["asked"]): s for one in runs for s in one["scores"]}
 
     def of(self, label, count):
         return self.scores.get((label, None if label == "all" else count))
@@ -381,8 +388,8 @@ def twin_part(have):
     labels = []
     for name, _, options, length in SCENARIOS:
         variants = twin_variants(have, length, wrong=name == "white")
-        result = run("twin", f"twin-{name}", section("twin", counts=TWIN_COUNTS, cases=CASES, window_minutes=60, step=2, background_length_km=LENGTH,
-                                                       error_factors=[0.25, 0.35, 0.5, 0.7, 1, 1.4, 2, 2.8], **options) + variants.text)
+        result = variants.runs("twin", f"twin-{name}", section("twin", counts=TWIN_COUNTS, cases=CASES, window_minutes=60, step=2, background_length_km=LENGTH,
+                                                       error_factors=[0.25, 0.35, 0.5, 0.7, 1, 1.4, 2, 2.8], **options))
         if result:
             runs[name] = TwinRun(result)
             labels += [label for label in variants.labels if label not in labels]
@@ -475,10 +482,11 @@ def cycled_part(have):
     spin_up = 12
     count = 500
     cycle = section("cycle", wind_error=0.15, cycles=spin_up + 4 * DAYS, spin_up_cycles=spin_up, count=count, assimilation_length_km=400)
-    result = run("twin", "cycled", section("twin") + variants.text + cycle)
-    if not result:
+    runs = variants.runs("twin", "cycled", section("twin") + cycle)
+    if not runs:
         return
-    sets = {s["set"]: s for s in result["sets"]}
+    result = runs[0]
+    sets = {s["set"]: s for one in runs for s in one["sets"]}
     even = sets[UNIFORM]
     of_blocks = lambda s, key: blocks(s[key], 8)  # noqa: E731 (two days of four cycles)
     gain = lambda s, key: [100 * (1 - a / b) for a, b in zip(of_blocks(s, key), of_blocks(even, key))]  # noqa: E731

@@ -152,7 +152,7 @@ TEST(EvaluationSettings, NamesWhatIsWrong) {
 
 // In any order of the observations, and the same with the share in the configuration.
 TEST_F(EvaluateCommand, CrossValidates) {
-  const std::string draws = "withhold_draws = 2\n";
+  const std::string draws = "withhold_draws = 2\nwithhold_lengths_km = [200.0, 400.0]\nwithhold_error_ratios = [1.0]\n";
   std::string configuration = kSmall;
   configuration.insert(configuration.find("methods ="), draws);
   ASSERT_EQ(evaluate(configuration, {"--withhold", "0.25", "--json", path("a.json")}), 0);
