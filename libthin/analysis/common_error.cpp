@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libthin/estimation/gme_grid.h"
+#include "libthin/observations/mean_observations.h"
 
 namespace thin {
 namespace {
@@ -49,7 +50,8 @@ void take_means(EstimationError& sums) {
 }
 
 Result<std::vector<EstimationError>> errors_at(const Places& points, const ObservationSet& set,
-                                               const std::vector<Flags>& thinned, const CommonErrorOptions& options) {
+                                               const std::vector<Flags>& thinned, const CommonErrorOptions& options,
+                                               const Flags& full = {}) {
   const Places observations = places_of(set);
   std::vector<EstimationError> errors(thinned.size());
   for (std::size_t begin = 0; begin < points.size(); begin += options.slice) {
@@ -57,7 +59,7 @@ Result<std::vector<EstimationError>> errors_at(const Places& points, const Obser
     const auto table = neighbourhood_table(slice, observations, {options.bandwidth_km});
     if (!table) return table.error();
     for (std::size_t i = 0; i < thinned.size(); ++i)
-      add(errors[i], estimation_error(*table, set.values, set.channel_count(), thinned[i]));
+      add(errors[i], estimation_error(*table, set.values, set.channel_count(), thinned[i], {}, full));
   }
   for (EstimationError& error : errors) take_means(error);
   return errors;
@@ -79,6 +81,28 @@ Result<std::vector<CommonError>> common_errors(const ObservationSet& set, std::s
   for (std::size_t i = 0; i < thinned.size(); ++i)
     errors.push_back({std::move((*at_observations)[i]), std::move((*on_grid)[i])});
   return errors;
+}
+
+FullAndMeans full_and_means(const ObservationSet& set, std::span<const Retained> members) {
+  FullAndMeans both{set, Flags(set.size(), 1), Flags(set.size(), 0)};
+  both.observations.append(mean_observations(set, members));
+  both.is_full.resize(both.observations.size(), 0);
+  both.is_mean.resize(both.observations.size(), 1);
+  return both;
+}
+
+Result<CommonError> common_error_of_means(const ObservationSet& set, std::span<const Retained> members,
+                                          const CommonErrorOptions& options) {
+  const FullAndMeans both = full_and_means(set, members);
+  const Places observations = places_of(set);
+  const Places grid = evaluation_places(gme_grid(options.level), observations, options.bandwidth_km);
+  CommonError error;
+  for (const auto& [points, part] : {std::pair(&observations, &error.at_observations), {&grid, &error.on_grid}}) {
+    auto errors = errors_at(*points, both.observations, {both.is_mean}, options, both.is_full);
+    if (!errors) return errors.error();
+    *part = std::move(errors->front());
+  }
+  return error;
 }
 
 double mean_absolute_value_k(const ObservationSet& set) {

@@ -29,6 +29,17 @@ Result<std::vector<CommonError>> common_errors(const ObservationSet& observation
                                                std::span<const Retained> thinned_sets,
                                                const CommonErrorOptions& options);
 
+// The full set and the means that a method made of it (Choice::members) as one set.
+struct FullAndMeans {
+  ObservationSet observations;
+  std::vector<std::uint8_t> is_full, is_mean;
+};
+FullAndMeans full_and_means(const ObservationSet& observations, std::span<const Retained> members);
+
+// The same for one set of means.
+Result<CommonError> common_error_of_means(const ObservationSet& observations, std::span<const Retained> members,
+                                          const CommonErrorOptions& options);
+
 // Mean over the observations of |f|, the length of the vector of their values; K.
 double mean_absolute_value_k(const ObservationSet& observations);
 

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <numeric>
 
-#include "libthin/analysis/count_fitting.h"
 #include "libthin/analysis/signal_free.h"
 #include "libthin/analysis/synthetic_innovations.h"
 #include "libthin/estimation/gme_grid.h"
@@ -42,28 +41,17 @@ Result<Choice> timed_choice(const Thinner& thinner, const ObservationSet& set, i
   }
 }
 
-// Each number once, ascending.
-std::vector<std::int64_t> ascending(const std::vector<int>& counts) {
-  std::vector<std::int64_t> list(counts.begin(), counts.end());
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
-  return list;
-}
-
 // One point of a variant's curve.
 Result<void> thin_to(const ObservationSet& set, const Variant& variant, std::optional<std::int64_t> asked,
                      int repetitions, Evaluated& result, Cost& cost) {
   result.asked = asked;
-  if (asked && variant.thinner->stops_at_count()) variant.thinner->set_retain_count(*asked);
-  if (asked && !variant.thinner->stops_at_count()) {
-    const auto value =
-        fit_to_count(*variant.thinner, variant.options, variant.fit, set, static_cast<std::size_t>(*asked));
-    if (!value) return value.error();
-    result.fitted_value = *value;
-  }
+  Result<std::optional<double>> fitted = aim_at(variant, set, asked);
+  if (!fitted) return fitted.error();
+  result.fitted_value = *fitted;
   Result<Choice> choice = timed_choice(*variant.thinner, set, repetitions, cost);
   if (!choice) return choice.error();
   result.retained = std::move(choice->retained);
+  result.members = std::move(choice->members);
   result.notes = std::move(choice->notes);
   return {};
 }
@@ -72,12 +60,7 @@ void thin_all(const ObservationSet& set, const std::vector<Variant>& variants, c
               const Progress& progress, Evaluation& evaluation) {
   for (std::size_t v = 0; v < variants.size(); ++v) {
     const Variant& variant = variants[v];
-    std::vector<std::optional<std::int64_t>> points = {std::nullopt};
-    if (variant.thinner->stops_at_count() || !variant.fit.empty()) {
-      const auto counts = ascending(options.counts);
-      points.assign(counts.begin(), counts.end());
-    }
-    for (const auto& asked : points) {
+    for (const auto& asked : numbers_for(variant, options.counts)) {
       progress(asked ? fmt::format("{}: to {}", variant.label, *asked) : variant.label);
       Evaluated result;
       Cost cost;
@@ -95,11 +78,17 @@ void thin_all(const ObservationSet& set, const std::vector<Variant>& variants, c
 Result<void> add_errors(const ObservationSet& set, const EvaluationOptions& options, Evaluation& evaluation) {
   std::vector<Retained> thinned;
   for (const Evaluated& result : evaluation.results) thinned.push_back(result.retained);
-  auto errors = common_errors(set, thinned, {.bandwidth_km = options.bandwidth_km, .level = options.level});
+  const CommonErrorOptions common{.bandwidth_km = options.bandwidth_km, .level = options.level};
+  auto errors = common_errors(set, thinned, common);
   if (!errors) return errors.error();
   for (std::size_t i = 0; i < thinned.size(); ++i) {
     Evaluated& result = evaluation.results[i];
     result.error = std::move((*errors)[i]);
+    if (!result.members.empty()) {
+      auto of_means = common_error_of_means(set, result.members, common);
+      if (!of_means) return of_means.error();
+      result.error = std::move(*of_means);
+    }
     result.signal_to_noise_observations_db =
         signal_to_noise_db(evaluation.mean_absolute_value_k, result.error.at_observations.mean_squared_k2);
     result.signal_to_noise_grid_db =

@@ -11,7 +11,7 @@
 #include "libthin/analysis/common_error.h"
 #include "libthin/analysis/density_difference.h"
 #include "libthin/analysis/separation_statistics.h"
-#include "libthin/thinning/thinner.h"
+#include "libthin/analysis/variant.h"
 
 namespace thin {
 
@@ -32,21 +32,13 @@ struct EvaluationOptions {
   void declare(OptionTable& table);
 };
 
-// A method with its options.
-struct Variant {
-  std::string label;  // different for each
-  std::unique_ptr<Thinner> thinner;
-  OptionTable options;  // of *thinner
-  // For methods that can't be told a number: the option that is fitted to it; empty: run once, as it is.
-  std::string fit;
-};
-
 // One thinned set. Everything in it depends on the observations and the options alone.
 struct Evaluated {
   std::size_t variant = 0;             // place in the list of variants
   std::optional<std::int64_t> asked;   // to retain; nothing: the method stops by itself
   std::optional<double> fitted_value;  // of the variant's option `fit`
   Retained retained;
+  std::vector<Retained> members;  // as Choice's
   std::vector<std::string> notes;
   SeparationStatistics separation;
   CommonError error;

@@ -11,7 +11,8 @@ class PointError {
   explicit PointError(std::size_t channels) : full_(channels), thinned_(channels) {}
 
   void evaluate(const NeighbourhoodTable& table, std::size_t q, std::span<const double> values,
-                std::span<const std::uint8_t> retained, double* squared, double* full_squared) {
+                std::span<const std::uint8_t> retained, std::span<const std::uint8_t> full, double* squared,
+                double* full_squared) {
     const std::size_t channels = full_.size();
     std::fill(full_.begin(), full_.end(), 0.0);
     std::fill(thinned_.begin(), thinned_.end(), 0.0);
@@ -20,17 +21,19 @@ class PointError {
     for (std::uint64_t entry = table.row_begin[q]; entry < table.row_begin[q + 1]; ++entry) {
       const std::uint32_t p = table.observation[entry];
       const double weight = table.weight[entry];
-      full_weight += weight;
-      for (std::size_t c = 0; c < channels; ++c) full_[c] += weight * values[p * channels + c];
+      if (full.empty() || full[p]) {
+        full_weight += weight;
+        for (std::size_t c = 0; c < channels; ++c) full_[c] += weight * values[p * channels + c];
+      }
       if (!retained[p]) continue;
       thinned_weight += weight;
       for (std::size_t c = 0; c < channels; ++c) thinned_[c] += weight * values[p * channels + c];
     }
     for (std::size_t c = 0; c < channels; ++c) {
-      const double full = full_[c] / full_weight;
+      const double whole = full_weight > 0 ? full_[c] / full_weight : 0.0;
       const double thinned = thinned_weight > 0 ? thinned_[c] / thinned_weight : 0.0;
-      squared[c] = (full - thinned) * (full - thinned);
-      full_squared[c] = full * full;
+      squared[c] = (whole - thinned) * (whole - thinned);
+      full_squared[c] = whole * whole;
     }
   }
 
@@ -41,7 +44,8 @@ class PointError {
 }  // namespace
 
 EstimationError estimation_error(const NeighbourhoodTable& table, std::span<const double> values, std::size_t channels,
-                                 std::span<const std::uint8_t> retained, std::span<const std::uint8_t> counted) {
+                                 std::span<const std::uint8_t> retained, std::span<const std::uint8_t> counted,
+                                 std::span<const std::uint8_t> full_set) {
   std::vector<std::size_t> rows;
   for (std::size_t q = 0; q < table.evaluation_point_count(); ++q)
     if (counted.empty() || counted[q]) rows.push_back(q);
@@ -50,7 +54,8 @@ EstimationError estimation_error(const NeighbourhoodTable& table, std::span<cons
   parallel_ranges(points, 1024, [&](std::size_t begin, std::size_t end) {
     PointError point_error(channels);
     for (std::size_t i = begin; i < end; ++i)
-      point_error.evaluate(table, rows[i], values, retained, &squared[i * channels], &full_squared[i * channels]);
+      point_error.evaluate(table, rows[i], values, retained, full_set, &squared[i * channels],
+                           &full_squared[i * channels]);
   });
 
   // One thread sums, in the order of the points: the bits must not depend on the cores.

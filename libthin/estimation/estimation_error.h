@@ -20,8 +20,11 @@ struct EstimationError {
 
 // values: n x channels, K, none missing. retained: n, not 0 for the observations in P. Q are the rows of `table`, or
 // those of them for which `counted` (as many as rows) is not 0.
+// `full`: likewise, of the observations in P0, for a P that is not a subset of it: then the observations are those of
+// both. Empty: all.
 // Straight from the definition; O(entries x channels), on all cores, the same bits for any number of them.
 EstimationError estimation_error(const NeighbourhoodTable& table, std::span<const double> values, std::size_t channels,
-                                 std::span<const std::uint8_t> retained, std::span<const std::uint8_t> counted = {});
+                                 std::span<const std::uint8_t> retained, std::span<const std::uint8_t> counted = {},
+                                 std::span<const std::uint8_t> full = {});
 
 }  // namespace thin

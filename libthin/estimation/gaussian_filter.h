@@ -9,9 +9,10 @@
 namespace thin {
 
 struct GaussianFilter {
-  double bandwidth_km = 100;  // h
+  double bandwidth_km = 100;       // h
+  double reach_in_bandwidths = 3;  // where it is cut off
 
-  double radius_km() const { return 3 * bandwidth_km; }
+  double radius_km() const { return reach_in_bandwidths * bandwidth_km; }
 
   // w of each squared distance, km², to within 2 units in the last place. The exponential is our own, of nothing but
   // additions and multiplications, so that its bits are the same on every processor. REQUIRES: 0 <= each <= (26 h)²

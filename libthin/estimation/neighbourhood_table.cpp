@@ -300,4 +300,31 @@ Result<NeighbourhoodTable> neighbourhood_table(const Places& observations, const
   return rows_of(Search(observations, observations, filter), observations, filter, true, nullptr, memory_bytes);
 }
 
+Result<NeighbourhoodTable> neighbourhood_rows(const Places& evaluation_points, const Places& observations,
+                                              const GaussianFilter& filter) {
+  return rows_of(Search(evaluation_points, observations, filter), observations, filter, true, nullptr,
+                 std::numeric_limits<std::uint64_t>::max());
+}
+
+void each_neighbourhood(const Places& evaluation_points, const Places& observations, const GaussianFilter& filter,
+                        const NeighbourhoodBody& body) {
+  const Search search(evaluation_points, observations, filter);
+  std::vector<std::uint32_t> counts(search.point_count(), 0);
+  parallel_ranges(search.run_count(), kRunsPerBlock, [&](std::size_t begin, std::size_t end) {
+    Search::Scratch scratch;
+    Block block;
+    for (std::size_t run = begin; run < end; ++run) {
+      block.observation.clear();
+      block.weight.clear();
+      search.search(run, scratch, counts.data(), block);
+      std::size_t next = 0;
+      for (const std::uint32_t q : search.points_of(run)) {
+        body(q, std::span(block.observation).subspan(next, counts[q]),
+             std::span(block.weight).subspan(next, counts[q]));
+        next += counts[q];
+      }
+    }
+  });
+}
+
 }  // namespace thin

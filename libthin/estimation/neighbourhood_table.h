@@ -4,6 +4,7 @@
 // compressed-sparse-row table by evaluation point, and the same entries by observation.
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -56,5 +57,16 @@ Result<NeighbourhoodTable> neighbourhood_table(const Places& evaluation_points, 
 // The same with the observations as evaluation points.
 Result<NeighbourhoodTable> neighbourhood_table(const Places& observations, const GaussianFilter& filter,
                                                std::uint64_t memory_bytes = available_memory_bytes());
+
+// The rows alone, every one kept, without columns and without asking for the memory first: for those who have done so.
+Result<NeighbourhoodTable> neighbourhood_rows(const Places& evaluation_points, const Places& observations,
+                                              const GaussianFilter& filter);
+
+// Calls body(q, observations within reach of q in ascending order, their weights) for each evaluation point, on all
+// cores, without keeping a table. REQUIRES: bodies of different q may run at the same time
+using NeighbourhoodBody =
+    std::function<void(std::uint32_t q, std::span<const std::uint32_t> observations, std::span<const double> weights)>;
+void each_neighbourhood(const Places& evaluation_points, const Places& observations, const GaussianFilter& filter,
+                        const NeighbourhoodBody& body);
 
 }  // namespace thin

@@ -14,31 +14,21 @@
 namespace thin {
 namespace {
 
-struct CellsOfObservations {
-  std::vector<std::uint64_t> cell;
-  std::vector<double> distance_km;  // to the cell's centre
-
-  explicit CellsOfObservations(std::size_t n) : cell(n), distance_km(n) {}
-};
-
-CellsOfObservations boxes_of(const ObservationSet& observations, double mesh_km) {
+void find_boxes(const ObservationSet& observations, double mesh_km, BoxedObservations& cells) {
   using Mesh = LatitudeLongitudeMesh;
   const double meridian_km = std::numbers::pi * kEarthRadiusKm;
   const Mesh mesh = Mesh::reduced(Mesh::rounded(meridian_km / mesh_km, Mesh::Rounding::nearest),
                                   2 * meridian_km / mesh_km, Mesh::Rounding::nearest);
-  CellsOfObservations cells(observations.size());
   for (std::size_t i = 0; i < observations.size(); ++i) {
     const Mesh::Box box = mesh.box_of(observations.latitude_deg[i], observations.longitude_deg[i]);
     cells.cell[i] = mesh.number(box);
     cells.distance_km[i] = chord_km(observations.position_km[i],
                                     geocentric_km(mesh.centre_latitude_deg(box), mesh.centre_longitude_deg(box)));
   }
-  return cells;
 }
 
-CellsOfObservations gme_cells_of(const ObservationSet& observations, int level) {
+void find_gme_cells(const ObservationSet& observations, int level, BoxedObservations& cells) {
   const KdTree vertices(places_at(gme_grid(level)).coordinates, 3);
-  CellsOfObservations cells(observations.size());
   parallel_ranges(observations.size(), 1024, [&](std::size_t begin, std::size_t end) {
     std::vector<Neighbour> nearest;
     for (std::size_t i = begin; i < end; ++i) {
@@ -49,32 +39,38 @@ CellsOfObservations gme_cells_of(const ObservationSet& observations, int level) 
       cells.distance_km[i] = std::sqrt(nearest.front().distance_squared);
     }
   });
-  return cells;
 }
 
 }  // namespace
 
-void Box::declare_options(OptionTable& table) {
+void BoxOptions::declare(OptionTable& table) {
   table.add_choice(
-      "grid", grid_,
+      "grid", grid,
       std::vector<std::pair<std::string, Grid>>{{"latitude_longitude", Grid::latitude_longitude}, {"gme", Grid::gme}},
       {.explanation = "boxes of nearly equal area between circles of latitude, or cells of the GME grid"});
-  table.add("horizontal_mesh", horizontal_mesh_km_,
+  table.add("horizontal_mesh", horizontal_mesh_km,
             {.unit = "km",
              .minimum = 0.1,
              .maximum = 20000,
              .explanation = "side of a box, where grid = \"latitude_longitude\""});
-  table.add("level", level_,
+  table.add("level", level,
             {.unit = "subdivisions",
              .minimum = 0,
              .maximum = kMaximumGmeLevel,
              .explanation = "of the GME grid, where grid = \"gme\": 10*4^level + 2 cells, 6 is about 112 km"});
 }
 
+BoxedObservations::BoxedObservations(const ObservationSet& observations, const BoxOptions& options)
+    : cell(observations.size()), distance_km(observations.size()) {
+  if (options.grid == BoxOptions::Grid::gme)
+    find_gme_cells(observations, options.level, *this);
+  else
+    find_boxes(observations, options.horizontal_mesh_km, *this);
+}
+
 Result<Choice> Box::choose(const ThinningInput& input) const {
-  const CellsOfObservations cells =
-      grid_ == Grid::gme ? gme_cells_of(input.observations, level_) : boxes_of(input.observations, horizontal_mesh_km_);
-  return Choice{nearest_of_each_cell(input, cells.cell, cells.distance_km)};
+  const BoxedObservations boxed(input.observations, boxes_);
+  return Choice{nearest_of_each_cell(input, boxed.cell, boxed.distance_km)};
 }
 
 }  // namespace thin

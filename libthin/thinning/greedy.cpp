@@ -24,9 +24,10 @@ std::vector<std::vector<std::uint32_t>> strata(std::size_t n, std::span<const do
 }
 
 // The cheapest of a stratum, taken one after the other.
+template <class Sums>
 class Candidates {
  public:
-  Candidates(EstimationSums& sums, Update update) : sums_(sums), queue_(sums, update) {}
+  Candidates(Sums& sums, Update update) : sums_(sums), queue_(sums, update) {}
 
   void add(std::uint32_t p) { queue_.add(p); }
   void drop(std::uint32_t p) { queue_.drop(p); }
@@ -42,14 +43,15 @@ class Candidates {
   }
 
  private:
-  EstimationSums& sums_;
-  IncrementQueue queue_;
+  Sums& sums_;
+  IncrementQueue<Sums> queue_;
 };
 
 // The error as the steps move it.
 class ErrorLimit {
  public:
-  ErrorLimit(const EstimationSums& sums, std::optional<double> limit) : limit_(limit) {
+  template <class Sums>
+  ErrorLimit(const Sums& sums, std::optional<double> limit) : limit_(limit) {
     if (limit) error_sum_ = sums.error_sum();
   }
   bool is_passed_by(double increment) const { return limit_ && error_sum_ + increment > *limit_; }
@@ -120,7 +122,8 @@ void remove_greedily(EstimationSums& sums, const GreedyGoal& goal, Update update
   }
 }
 
-void insert_greedily(EstimationSums& sums, const GreedyGoal& goal, Update update, std::vector<std::uint32_t>* order) {
+template <class Sums>
+void insert_greedily(Sums& sums, const GreedyGoal& goal, Update update, std::vector<std::uint32_t>* order) {
   if (update == Update::full)
     sums.track(EstimationSums::Track::given_up);
   else
@@ -144,5 +147,8 @@ void insert_greedily(EstimationSums& sums, const GreedyGoal& goal, Update update
     }
   }
 }
+
+template void insert_greedily(EstimationSums&, const GreedyGoal&, Update, std::vector<std::uint32_t>*);
+template void insert_greedily(LocalAnalysis&, const GreedyGoal&, Update, std::vector<std::uint32_t>*);
 
 }  // namespace thin

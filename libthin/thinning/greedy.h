@@ -1,8 +1,8 @@
 #pragma once
 
 // The greedy halves of estimation error analysis: by removal from the full set (thesis 6.3.2, 6.3.3), and by insertion
-// into the empty one (6.3.4). At each step the observation is taken whose change of state raises the estimation error
-// least.
+// into the empty one (6.3.4), by which analysis thinning begins too. At each step the observation is taken whose change
+// of state raises the error least.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libthin/estimation/estimation_sums.h"
+#include "libthin/estimation/local_analysis.h"
 #include "libthin/thinning/increment_queue.h"
 #include "libthin/thinning/separation.h"
 
@@ -29,8 +30,9 @@ struct GreedyGoal {
 void remove_greedily(EstimationSums& sums, const GreedyGoal& goal, Update update,
                      std::vector<std::uint32_t>* order = nullptr);
 
-// Inserts into `sums` (started with none). `order`, if given, receives the inserted in order.
-void insert_greedily(EstimationSums& sums, const GreedyGoal& goal, Update update,
-                     std::vector<std::uint32_t>* order = nullptr);
+// Inserts into `sums` (started with none): EstimationSums or LocalAnalysis, whose J is the error then. `order`, if
+// given, receives the inserted in order.
+template <class Sums>
+void insert_greedily(Sums& sums, const GreedyGoal& goal, Update update, std::vector<std::uint32_t>* order = nullptr);
 
 }  // namespace thin

@@ -1,6 +1,6 @@
 #pragma once
 
-// Observations by what changing their state would add to the estimation error, the cheapest first.
+// Observations by what changing their state would add to the error, the cheapest first.
 //
 // A queued key may lie below the increment that it stands for, never above it (but for lazy updating): what comes to
 // the front is made right there, and is the cheapest only if it stays in front. So rises, which are most of the
@@ -10,7 +10,6 @@
 #include <limits>
 #include <vector>
 
-#include "libthin/estimation/estimation_sums.h"
 #include "libthin/foundation/indexed_priority_queue.h"
 
 namespace thin {
@@ -20,10 +19,11 @@ enum class Update {
   lazy,  // an increment is made right only when its observation reaches the front of the queue (thesis 6.4.2)
 };
 
+template <class Sums>  // EstimationSums, LocalAnalysis
 class IncrementQueue {
  public:
   // `sums` must track the increments of what is queued, or with lazy updating have computed them all at first.
-  IncrementQueue(const EstimationSums& sums, Update update)
+  IncrementQueue(const Sums& sums, Update update)
       : sums_(sums), update_(update), queue_(sums.observation_count()), keys_(sums.observation_count(), kAbsent) {
     if (update == Update::lazy) valid_at_.assign(sums.observation_count(), 0);
   }
@@ -78,7 +78,7 @@ class IncrementQueue {
 
   static constexpr double kAbsent = -std::numeric_limits<double>::infinity();
 
-  const EstimationSums& sums_;
+  const Sums& sums_;
   Update update_;
   IndexedPriorityQueue<double> queue_;
   std::vector<double> keys_;             // the queue's, where they are found faster; kAbsent for what is not queued

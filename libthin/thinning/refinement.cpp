@@ -15,14 +15,12 @@ constexpr double kTrialsPerObservation = 20;
 constexpr double kColdest = 0.03;
 constexpr double kFarShare = 0.05;
 
-// What an exchange must gain, as a share of the error, so that rounding alone keeps nothing going.
-constexpr double kLeastGain = 1e-12;
-
 bool may_replace(const SwapRules& rules, std::uint32_t out, std::uint32_t in) {
   return rules.priority.empty() || rules.priority[in] >= rules.priority[out];
 }
 
-bool stands_apart(const EstimationSums& sums, const SwapRules& rules, std::uint32_t in, std::uint32_t out) {
+template <class Sums>
+bool stands_apart(const Sums& sums, const SwapRules& rules, std::uint32_t in, std::uint32_t out) {
   if (!rules.separation) return true;
   for (const std::uint32_t near : rules.separation->too_near_to(in))
     if (near != out && sums.is_retained(near)) return false;
@@ -31,9 +29,10 @@ bool stands_apart(const EstimationSums& sums, const SwapRules& rules, std::uint3
 
 // Both queues over tracked sums. An observation that may not be retained beside the present ones is left out of the
 // insertions until the next exchange succeeds.
+template <class Sums>
 class Exchange {
  public:
-  Exchange(EstimationSums& sums, const SwapRules& rules)
+  Exchange(Sums& sums, const SwapRules& rules)
       : sums_(sums), rules_(rules), removals_(sums, Update::full), insertions_(sums, Update::full) {
     for (std::uint32_t p = 0; p < sums.observation_count(); ++p) (sums.is_retained(p) ? removals_ : insertions_).add(p);
   }
@@ -68,8 +67,8 @@ class Exchange {
   }
 
   void flip(std::uint32_t p) {
-    IncrementQueue& from = sums_.is_retained(p) ? removals_ : insertions_;
-    IncrementQueue& to = sums_.is_retained(p) ? insertions_ : removals_;
+    IncrementQueue<Sums>& from = sums_.is_retained(p) ? removals_ : insertions_;
+    IncrementQueue<Sums>& to = sums_.is_retained(p) ? insertions_ : removals_;
     from.drop(p);
     sums_.change_state(p);
     to.add(p);
@@ -77,9 +76,9 @@ class Exchange {
     insertions_.heed_fallen();
   }
 
-  EstimationSums& sums_;
+  Sums& sums_;
   const SwapRules& rules_;
-  IncrementQueue removals_, insertions_;
+  IncrementQueue<Sums> removals_, insertions_;
 };
 
 // Numbers that are the same with every standard library.
@@ -144,14 +143,19 @@ void RefinementOptions::declare(OptionTable& table) {
             {.minimum = 0, .maximum = 1000, .explanation = "of annealing: in proportion to it grow its trials"});
 }
 
-void exchange(EstimationSums& sums, const SwapRules& rules) {
-  const double gain = kLeastGain * (1 + sums.error_sum());
+template <class Sums>
+std::size_t exchange(Sums& sums, const SwapRules& rules, double least_gain) {
+  const double gain = least_gain * (1 + sums.error_sum());
   sums.track(EstimationSums::Track::both);
   Exchange exchange(sums, rules);
-  while (exchange.step(gain)) {
-  }
+  std::size_t swaps = 0;
+  while (exchange.step(gain)) ++swaps;
   sums.track(EstimationSums::Track::nothing);
+  return swaps;
 }
+
+template std::size_t exchange(EstimationSums&, const SwapRules&, double);
+template std::size_t exchange(LocalAnalysis&, const SwapRules&, double);
 
 void anneal(EstimationSums& sums, const SwapRules& rules, std::uint64_t trials, std::uint64_t seed) {
   std::vector<std::uint32_t> retained = sums.retained();

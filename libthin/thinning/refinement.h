@@ -9,6 +9,7 @@
 #include <span>
 
 #include "libthin/estimation/estimation_sums.h"
+#include "libthin/estimation/local_analysis.h"
 #include "libthin/foundation/options.h"
 #include "libthin/thinning/separation.h"
 
@@ -35,8 +36,13 @@ struct SwapRules {
   const Separation* separation = nullptr;  // nothing is retained that stands too near to another
 };
 
-// Swaps retained against given-up observations of `sums` while |Q| E falls.
-void exchange(EstimationSums& sums, const SwapRules& rules);
+// What an exchange must gain at least, as a share of the error, so that rounding alone keeps nothing going.
+constexpr double kLeastGain = 1e-12;
+
+// Swaps retained against given-up observations of `sums` (EstimationSums, LocalAnalysis) while |Q| E, or J, falls.
+// Returns the number of swaps.
+template <class Sums>
+std::size_t exchange(Sums& sums, const SwapRules& rules, double least_gain = kLeastGain);
 
 // `trials` random swaps.
 void anneal(EstimationSums& sums, const SwapRules& rules, std::uint64_t trials, std::uint64_t seed);

@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <array>
 
+#include "libthin/thinning/analysis_thinning.h"
 #include "libthin/thinning/box.h"
 #include "libthin/thinning/eea.h"
 #include "libthin/thinning/gaussian.h"
 #include "libthin/thinning/octree.h"
 #include "libthin/thinning/poisson_disk.h"
 #include "libthin/thinning/stepwise.h"
+#include "libthin/thinning/superob.h"
 #include "libthin/thinning/thinning_method.h"
 #include "libthin/thinning/top_down_clustering.h"
 
@@ -29,6 +31,8 @@ std::span<const MethodEntry> thinning_methods() {
   using Way = Eea::Direction;
   using Points = Eea::EvaluationPoints;
   static const std::array entries = {
+      MethodEntry{"analysis", "insertion of what brings the analysis nearest to that from all, then exchange",
+                  "sequential optimal interpolation; docs/methods.md", make<AnalysisThinning>},
       MethodEntry{"box", "one observation per equal-area box or GME cell, the nearest to its centre",
                   "Purser et al. 2000; box thinning as centres use it", make<Box>},
       MethodEntry{"eea", "greedy removal of what the Gaussian estimate at the observations misses least",
@@ -48,6 +52,8 @@ std::span<const MethodEntry> thinning_methods() {
                   "the filter Poisson Disk Thinning of JEDI's UFO", make<PoissonDisk>},
       MethodEntry{"stepwise", "every s-th field of view of every s-th scan line", "the reference of thesis 6.5",
                   make<Stepwise>},
+      MethodEntry{"superob", "all observations of a box become one, their mean: not a subset, CF netCDF alone",
+                  "superobbing as centres use it; Lorenc 1981, Purser et al. 2000", make<Superob>},
       MethodEntry{"top_down_clustering", "one observation per cluster of near places and like values",
                   "thesis 6.3.1, eq. 6.8, 6.9; Gersho and Gray 1992", make<TopDownClustering>},
       MethodEntry{"top_down_eea",

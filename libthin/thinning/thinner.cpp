@@ -12,6 +12,7 @@
 #include <set>
 #include <tuple>
 
+#include "libthin/observations/mean_observations.h"
 #include "libthin/thinning/separation.h"
 
 namespace thin {
@@ -80,6 +81,28 @@ Category category_of(const ObservationSet& observations, const std::vector<std::
   category.observations = set.select_channels(places);
   if (instruments.size() < 2) category.observations.channel_instrument.clear();
   return category;
+}
+
+// What was chosen among the observations at `indices`.
+void add(const Choice& choice, const std::vector<std::uint32_t>& indices, Choice& all) {
+  for (const std::uint32_t p : choice.retained) all.retained.push_back(indices[p]);
+  for (Retained members : choice.members) {
+    for (std::uint32_t& p : members) p = indices[p];
+    all.members.push_back(std::move(members));
+  }
+}
+
+void sort(Choice& choice) {
+  if (!choice.members.empty()) {
+    std::vector<std::size_t> order(choice.retained.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return choice.retained[a] < choice.retained[b]; });
+    std::vector<Retained> members;
+    for (const std::size_t i : order) members.push_back(std::move(choice.members[i]));
+    choice.members = std::move(members);
+  }
+  std::sort(choice.retained.begin(), choice.retained.end());
 }
 
 // Of two that stand too near to each other the later one goes, after those of lower priority.
@@ -192,12 +215,12 @@ Result<Choice> Thinner::thin(const ObservationSet& observations) const {
     Result<Choice> choice =
         thin_category(category.observations, category.errors_k, total ? std::optional(shares[i]) : std::nullopt);
     if (!choice) return choice;
-    for (const std::uint32_t p : choice->retained) all.retained.push_back(indices[p]);
+    add(*choice, indices, all);
     for (std::string& note : choice->notes)
       if (std::find(all.notes.begin(), all.notes.end(), note) == all.notes.end()) all.notes.push_back(std::move(note));
     if (!all.bandwidth_km) all.bandwidth_km = choice->bandwidth_km;
   }
-  std::sort(all.retained.begin(), all.retained.end());
+  sort(all);
   return all;
 }
 
@@ -220,6 +243,11 @@ Result<Choice> Thinner::thin_category(const ObservationSet& observations, const 
   Result<Choice> choice = method_->choose(input);
   if (choice && selection_.min_separation_km > 0) choice->retained = separated(input, choice->retained);
   return choice;
+}
+
+ObservationSet chosen_observations(const ObservationSet& observations, const Choice& choice) {
+  return choice.members.empty() ? observations.select(choice.retained)
+                                : mean_observations(observations, choice.members);
 }
 
 Result<std::vector<double>> number_named(const ObservationSet& set, const std::string& name) {

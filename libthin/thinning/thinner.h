@@ -38,6 +38,7 @@ class Thinner {
   // For callers that thin the same observations to several numbers.
   void set_retain_count(std::int64_t count);
   bool stops_at_count() const { return traits_.stops_at_count; }
+  bool makes_observations() const { return traits_.makes_observations; }
 
   // Chooses. `observations` are in canonical order. Categories share a retain_count by their sizes.
   // Errors: input, where a value that is measured is not finite; configuration, where an option names a variable that

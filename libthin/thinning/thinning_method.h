@@ -43,9 +43,16 @@ struct ThinningInput {
 
 struct Choice {
   Retained retained;
+  // Of methods that make observations: the members of each, ascending, whose mean goes on in their place
+  // (observations/mean_observations.h). Then retained[i] is the member nearest to the mean of members[i] and stands for
+  // it where places are counted. Empty: the retained go on as they are.
+  std::vector<Retained> members = {};
   std::vector<std::string> notes = {};      // what a user should know, a sentence each
   std::optional<double> bandwidth_km = {};  // h of the Gaussian filter, where the method has one
 };
+
+// What goes on by this choice to whatever uses observations: the retained, or the means that were made.
+ObservationSet chosen_observations(const ObservationSet& observations, const Choice& choice);
 
 class ThinningMethod {
  public:
@@ -53,12 +60,13 @@ class ThinningMethod {
 
   // Which of the common options (thinner.h) make sense for the method.
   struct Traits {
-    bool stops_at_count = true;  // retain_count, retain_fraction
-    bool needs_count = true;     // one of the two must be given; else they are one way of stopping among others
-    bool uses_values = true;     // observation_errors, instruments = "joint"
-    bool uses_places = true;     // time_scale_km_per_hour
-    bool takes_priority = true;  // priority_variable
-    bool keeps_apart = true;     // min_separation_km; what the method itself doesn't heed is seen to after it
+    bool stops_at_count = true;       // retain_count, retain_fraction
+    bool needs_count = true;          // one of the two must be given; else they are one way of stopping among others
+    bool uses_values = true;          // observation_errors, instruments = "joint"
+    bool uses_places = true;          // time_scale_km_per_hour
+    bool takes_priority = true;       // priority_variable
+    bool keeps_apart = true;          // min_separation_km; what the method itself doesn't heed is seen to after it
+    bool makes_observations = false;  // what goes on is not a subset: Choice::members
   };
   virtual Traits traits() const { return {}; }
 

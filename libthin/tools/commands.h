@@ -15,6 +15,7 @@ void add_info_command(CLI::App& program, Action& action);
 void add_methods_command(CLI::App& program, Action& action);
 void add_synth_command(CLI::App& program, Action& action);
 void add_evaluate_command(CLI::App& program, Action& action);
+void add_twin_command(CLI::App& program, Action& action);
 
 // For the daemon: one step of the way as one process, its outcome as one JSON object on standard output.
 void add_check_command(CLI::App& program, Action& action);

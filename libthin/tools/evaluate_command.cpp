@@ -13,6 +13,7 @@
 #include "libthin/tools/evaluation_report.h"
 #include "libthin/tools/option_text.h"
 #include "libthin/tools/preparation_data.h"
+#include "libthin/tools/withholding_report.h"
 
 namespace thin {
 namespace {
@@ -21,6 +22,7 @@ struct Arguments {
   std::string configuration, json, csv, costs;
   std::vector<std::string> files;
   std::optional<std::uint64_t> shuffle;
+  std::optional<double> withhold;
   bool show_keys = false;
 };
 
@@ -34,6 +36,7 @@ void print_section(const char* name, const char* explanation) {
 
 int show_keys() {
   print_section<EvaluationOptions>("[evaluate]", "what is compared, and how it is measured");
+  print_section<WithholdingOptions>("[evaluate]", "by cross-validation");
   print_section<VariantKeys>("[[evaluate.variant]]", "a method with options; as many as wanted");
   print_section<SyntheticOptions>("[synthetic]", "made-up observations instead of files");
   fmt::print("[input], [preparation] and [run] are as for thin run.\n");
@@ -84,12 +87,40 @@ Result<void> write_files(const Arguments& arguments, const Evaluation& evaluatio
   return {};
 }
 
+void set_share(EvaluationSettings& settings, double share) {
+  settings.withholding.share = share;
+  for (auto& [name, value] : settings.resolved)
+    if (name == "evaluate.withhold") value = fmt::format("{}", share);
+}
+
+// Instead of evaluate(), where a share is to be withheld.
+Result<int> cross_validate(const Arguments& arguments, const EvaluationSettings& settings, const Prepared& prepared) {
+  if (!arguments.csv.empty() || !arguments.costs.empty())
+    return Error{ErrorKind::configuration,
+                 "--csv and --costs don't go with cross-validation; its numbers are in --json"};
+  const ObservationSet& set = prepared.observations;
+  const Result<Withholding> withholding =
+      withhold(set, settings.variants, settings.evaluation.counts, settings.withholding,
+               [](const std::string& sentence) { spdlog::info("{}", sentence); });
+  if (!withholding) return withholding.error();
+  for (const std::string& note : withholding->notes) spdlog::warn("{}", note);
+  for (const Evaluation::Failure& failure : withholding->failures)
+    spdlog::error("{}: {}", settings.variants[failure.variant].label, failure.reason);
+  fmt::print("{}", withholding_table(*withholding, settings, set));
+  if (arguments.json.empty()) return 0;
+  const Result<void> written =
+      write_text_atomically(arguments.json, withholding_json(*withholding, settings, set, prepared.notes));
+  if (!written) return written.error();
+  return 0;
+}
+
 Result<int> run(const Arguments& arguments) {
   if (arguments.show_keys) return show_keys();
   if (arguments.configuration.empty())
     return Error{ErrorKind::configuration, "name a configuration with -c; --keys shows what it may hold"};
-  const Result<EvaluationSettings> settings = read_evaluation_settings(arguments.configuration);
+  Result<EvaluationSettings> settings = read_evaluation_settings(arguments.configuration);
   if (!settings) return settings.error();
+  if (arguments.withhold) set_share(*settings, *arguments.withhold);
   const ThreadLimit limit(settings->threads);
   Result<ObservationSet> all = observations_of(arguments, *settings);
   if (!all) return all.error();
@@ -108,6 +139,7 @@ Result<int> run(const Arguments& arguments) {
                                                all->size())};
   for (const std::string& note : prepared->notes) spdlog::warn("{}", note);
 
+  if (settings->withholding.share > 0) return cross_validate(arguments, *settings, *prepared);
   const Result<Evaluation> evaluation = evaluate(prepared->observations, settings->variants, settings->evaluation,
                                                  [](const std::string& sentence) { spdlog::info("{}", sentence); });
   if (!evaluation) return evaluation.error();
@@ -132,6 +164,10 @@ void add_evaluate_command(CLI::App& program, Action& action) {
   command->add_option("--costs", arguments->costs, "write seconds and memory here (CSV)");
   command->add_option("--shuffle", arguments->shuffle,
                       "bring the observations into the order of this seed first: nothing may change");
+  command
+      ->add_option("--withhold", arguments->withhold,
+                   "cross-validate: withhold this share, predict it from what is retained of the rest")
+      ->check(CLI::Range(0.01, 0.9));
   command->add_option("files", arguments->files, "files of soundings; none with [synthetic] source");
   command->callback([arguments, &action] {
     action = [arguments] {

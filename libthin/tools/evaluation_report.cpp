@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libthin/foundation/version.h"
+#include "libthin/tools/variant_json.h"
 
 namespace thin {
 namespace {
@@ -77,14 +78,6 @@ Json result_json(const Evaluated& result, const EvaluationSettings& settings) {
   return json;
 }
 
-Json variant_json(const Variant& variant) {
-  Json json = {{"label", variant.label}, {"method", variant.thinner->method_name()}};
-  json["fit"] = variant.fit.empty() ? Json() : Json(variant.fit);
-  const OptionTable options = variant.options.without({"retain_count", "retain_fraction", variant.fit});
-  for (const Option& option : options.options()) json["options"][option.name] = option.current_value();
-  return json;
-}
-
 Json observations_json(const Evaluation& evaluation, const EvaluationSettings& settings, const ObservationSet& set) {
   Json json = {{"count", set.size()},
                {"channels", set.channels},
@@ -141,9 +134,7 @@ std::string evaluation_json(const Evaluation& evaluation, const EvaluationSettin
   for (const Variant& variant : settings.variants) json["variants"].push_back(variant_json(variant));
   json["results"] = Json::array();
   for (const Evaluated& result : evaluation.results) json["results"].push_back(result_json(result, settings));
-  json["failures"] = Json::array();
-  for (const Evaluation::Failure& failure : evaluation.failures)
-    json["failures"].push_back({{"variant", settings.variants[failure.variant].label}, {"reason", failure.reason}});
+  json["failures"] = failures_json(evaluation.failures, settings.variants);
   json["notes"] = notes;
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

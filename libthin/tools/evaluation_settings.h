@@ -8,12 +8,15 @@
 
 #include "libthin/analysis/evaluation.h"
 #include "libthin/analysis/synthetic_innovations.h"
+#include "libthin/analysis/withholding.h"
 #include "libthin/tools/settings.h"
+#include "libthin/tools/variants.h"
 
 namespace thin {
 
 struct EvaluationSettings {
   EvaluationOptions evaluation;
+  WithholdingOptions withholding;
   std::vector<Variant> variants;
   SyntheticOptions synthetic;
   InputOptions input;
@@ -27,14 +30,5 @@ struct EvaluationSettings {
 // Error: configuration, with a line for every problem in the file.
 Result<EvaluationSettings> read_evaluation_settings(const std::string& path);
 Result<EvaluationSettings> read_evaluation_settings(Configuration configuration);
-
-// The keys of [[evaluate.variant]] beside those of its method.
-struct VariantKeys {
-  std::string method;
-  std::string label;
-  std::string fit = "auto";
-
-  void declare(OptionTable& table);
-};
 
 }  // namespace thin

@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   thin::add_methods_command(program, action);
   thin::add_synth_command(program, action);
   thin::add_evaluate_command(program, action);
+  thin::add_twin_command(program, action);
   thin::add_check_command(program, action);
   thin::add_ingest_command(program, action);
   thin::add_window_command(program, action);

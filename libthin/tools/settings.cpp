@@ -74,6 +74,12 @@ Result<Settings> read_settings(Configuration configuration) {
     configuration.add_problem("preparation", conflict->key, conflict->problem);
   settings.output.declare(output);
   configuration.read_section("output", output);
+  if (settings.thinner && settings.thinner->makes_observations() && settings.output.mode == OutputOptions::Mode::flag)
+    configuration.add_problem(
+        "output", "mode",
+        fmt::format("= \"flag\" does not go with method = \"{}\", which makes observations of its own: there are none "
+                    "to flag; its output is CF netCDF alone. Choose mode = \"subset\"",
+                    settings.method_name));
   declare_run_options(run, settings.threads);
   configuration.read_section("run", run);
   for (const char* section : kOtherSections) configuration.ignore_section(section);

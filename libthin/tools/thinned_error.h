@@ -17,6 +17,8 @@ struct ThinnedError {
   std::map<std::int32_t, EstimationError> platforms;  // each on the grid points that its observations reach
 };
 
-Result<ThinnedError> thinned_error(const ObservationSet& observations, const Retained& retained, double bandwidth_km);
+// members: as Choice's.
+Result<ThinnedError> thinned_error(const ObservationSet& observations, const Retained& retained,
+                                   const std::vector<Retained>& members, double bandwidth_km);
 
 }  // namespace thin

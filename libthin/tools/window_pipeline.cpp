@@ -9,6 +9,7 @@
 #include "libthin/tools/instrument_parts.h"
 #include "libthin/tools/preparation_data.h"
 #include "libthin/tools/report.h"
+#include "libthin/tools/superobs.h"
 
 namespace thin {
 namespace {
@@ -57,14 +58,30 @@ Result<Prepared> prepare_files(const std::vector<WindowFile>& files, const Obser
   return prepare(all, window, options, *data);
 }
 
+// What was chosen of these observations (ascending), by their places among them.
+std::pair<Retained, std::vector<Retained>> chosen_among(std::span<const std::uint32_t> part,
+                                                        const WindowOutcome& outcome) {
+  constexpr std::uint32_t elsewhere = 0xffffffff;
+  std::vector<std::uint32_t> place(outcome.prepared.observations.size(), elsewhere);
+  for (std::uint32_t i = 0; i < part.size(); ++i) place[part[i]] = i;
+  std::pair<Retained, std::vector<Retained>> chosen;
+  for (std::size_t i = 0; i < outcome.retained.size(); ++i) {
+    if (place[outcome.retained[i]] == elsewhere) continue;
+    chosen.first.push_back(place[outcome.retained[i]]);
+    if (outcome.members.empty()) continue;
+    Retained members = outcome.members[i];
+    for (std::uint32_t& member : members) member = place[member];
+    chosen.second.push_back(std::move(members));
+  }
+  return chosen;
+}
+
 Result<void> evaluate_each_instrument(double bandwidth_km, WindowOutcome& outcome) {
   return each_instrument(
       outcome.prepared.observations,
       [&](Instrument instrument, const ObservationSet& part, std::span<const std::uint32_t> members) -> Result<void> {
-        Retained retained;
-        for (std::uint32_t i = 0; i < members.size(); ++i)
-          if (std::binary_search(outcome.retained.begin(), outcome.retained.end(), members[i])) retained.push_back(i);
-        Result<ThinnedError> error = thinned_error(part, retained, bandwidth_km);
+        const auto [retained, merged] = chosen_among(members, outcome);
+        Result<ThinnedError> error = thinned_error(part, retained, merged, bandwidth_km);
         if (!error) return error.error();
         outcome.errors.emplace(instrument, std::move(*error));
         return {};
@@ -80,18 +97,9 @@ bool carries_other_messages(const ObservationSet& observations, const TimeWindow
 
 Result<FileOutcome> write_file(const WindowFile& file, const std::vector<SourceReference>& retained,
                                const TimeWindow& window, OutputOptions options, const std::string& directory) {
-  FileOutcome outcome;
-  outcome.name = file.name;
-  outcome.layout = file.contents.layout;
-  outcome.instrument = file.contents.instrument;
-  outcome.read = file.contents.observations.size();
-  outcome.retained = retained.size();
-  outcome.skipped = file.contents.skipped;
-  outcome.notes = file.contents.notes;
   const ObservationSet& observations = file.contents.observations;
-  outcome.observations =
-      static_cast<std::size_t>(std::count_if(observations.time_ms.begin(), observations.time_ms.end(),
-                                             [&](std::int64_t time_ms) { return window.holds(time_ms); }));
+  FileOutcome outcome = outcome_without_output(file, window);
+  outcome.retained = retained.size();
   // With flags, a file of which nothing is retained goes out with all of it flagged.
   const bool all_flagged = options.mode == OutputOptions::Mode::flag && outcome.observations > 0;
   if (retained.empty() && !all_flagged) return outcome;
@@ -106,8 +114,9 @@ Result<FileOutcome> write_file(const WindowFile& file, const std::vector<SourceR
   return outcome;
 }
 
-Result<void> write_outputs(const std::vector<WindowFile>& files, const Settings& settings, const std::string& directory,
-                           WindowOutcome& outcome) {
+// The outcome of each file, in the order of the files, with the outputs extracted from them.
+Result<void> extract_retained(const std::vector<WindowFile>& files, const Settings& settings,
+                              const std::string& directory, WindowOutcome& outcome) {
   std::vector<std::vector<SourceReference>> retained(files.size());
   for (const std::uint32_t i : outcome.retained) {
     const SourceReference& source = outcome.prepared.observations.source[i];
@@ -118,10 +127,32 @@ Result<void> write_outputs(const std::vector<WindowFile>& files, const Settings&
     if (!written) return written.error();
     outcome.files.push_back(std::move(*written));
   }
+  return {};
+}
+
+Result<void> write_outputs(const std::vector<WindowFile>& files, const ObservationSet& all, const Settings& settings,
+                           const std::string& directory, WindowOutcome& outcome) {
+  Result<void> written = settings.thinner->makes_observations() ? write_superobs(files, all, directory, outcome)
+                                                                : extract_retained(files, settings, directory, outcome);
+  if (!written) return written;
   return write_text_atomically(directory + "/" + kReportName, report_json(outcome, settings));
 }
 
 }  // namespace
+
+FileOutcome outcome_without_output(const WindowFile& file, const TimeWindow& window) {
+  FileOutcome outcome;
+  outcome.name = file.name;
+  outcome.layout = file.contents.layout;
+  outcome.instrument = file.contents.instrument;
+  outcome.read = file.contents.observations.size();
+  outcome.skipped = file.contents.skipped;
+  outcome.notes = file.contents.notes;
+  const std::vector<std::int64_t>& times_ms = file.contents.observations.time_ms;
+  outcome.observations = static_cast<std::size_t>(
+      std::count_if(times_ms.begin(), times_ms.end(), [&](std::int64_t time_ms) { return window.holds(time_ms); }));
+  return outcome;
+}
 
 Result<WindowOutcome> thin_window(std::vector<WindowFile> files, std::vector<RefusedFile> refused,
                                   const TimeWindow& window, const Settings& settings,
@@ -146,6 +177,7 @@ Result<WindowOutcome> thin_window(std::vector<WindowFile> files, std::vector<Ref
   Result<Choice> choice = settings.thinner->thin(outcome.prepared.observations);
   if (!choice) return choice.error();
   outcome.retained = std::move(choice->retained);
+  outcome.members = std::move(choice->members);
   for (std::string& note : choice->notes) outcome.prepared.notes.push_back(std::move(note));
   for (const std::uint32_t i : outcome.retained)
     ++outcome.retained_by_sounder[sounder_of(outcome.prepared.observations, i)];
@@ -155,7 +187,7 @@ Result<WindowOutcome> thin_window(std::vector<WindowFile> files, std::vector<Ref
   if (Result<void> evaluated = evaluate_each_instrument(bandwidth_km, outcome); !evaluated) return evaluated.error();
   clock.finish("evaluate");
 
-  if (Result<void> written = write_outputs(files, settings, output_directory, outcome); !written)
+  if (Result<void> written = write_outputs(files, all, settings, output_directory, outcome); !written)
     return written.error();
   clock.finish("write");
   return outcome;

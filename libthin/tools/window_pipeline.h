@@ -39,21 +39,26 @@ struct FileOutcome {
   std::vector<std::string> notes;  // on how it was read
 };
 
+// What there is to say of a file before anything is written of it.
+FileOutcome outcome_without_output(const WindowFile& file, const TimeWindow& window);
+
 struct WindowOutcome {
   TimeWindow window;
   std::vector<FileOutcome> files;    // by name
   std::vector<RefusedFile> refused;  // by name
   Prepared prepared;
-  Retained retained;  // indices into prepared.observations
+  Retained retained;              // indices into prepared.observations
+  std::vector<Retained> members;  // likewise, as Choice's: what goes on are their means
   std::map<Sounder, std::size_t> retained_by_sounder;
   std::map<Instrument, ThinnedError> errors;
   StepSeconds seconds;  // never part of the report
 };
 
 // Writes <output_directory>/<name> for each file of which something is retained, then report.json; each whole or not
-// at all. The outputs depend on the files, those that the settings name, the window and the settings alone: not on the
-// order of the files. Errors: input, where nothing is left to thin; those of reading what the settings name, of
-// prepare(), the method and extract_observations().
+// at all. Of a method that makes observations: superobs-<instrument>.nc instead (superobs.h). The outputs depend on the
+// files, those that the settings name, the window and the settings alone: not on the order of the files. Errors: input,
+// where nothing is left to thin; those of reading what the settings name, of prepare(), the method and
+// extract_observations().
 Result<WindowOutcome> thin_window(std::vector<WindowFile> files, std::vector<RefusedFile> refused,
                                   const TimeWindow& window, const Settings& settings,
                                   const std::string& output_directory);

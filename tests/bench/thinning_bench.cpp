@@ -6,8 +6,10 @@
 
 #include "libthin/estimation/gme_grid.h"
 #include "libthin/estimation/neighbourhood_table.h"
+#include "libthin/foundation/memory.h"
 #include "libthin/foundation/parallel.h"
 #include "libthin/thinning/thinner.h"
+#include "tests/support/random_observations.h"
 #include "tests/support/synthetic_soundings.h"
 
 namespace thin {
@@ -77,6 +79,50 @@ METHOD_BENCHMARK(gaussian, "gaussian", {{"horizontal_mesh", 200.0}});
 METHOD_BENCHMARK(poisson_disk, "poisson_disk", {{"min_horizontal_spacing", 150.0}});
 METHOD_BENCHMARK(octree, "octree", {{"value_tolerance", 0.4}});
 METHOD_BENCHMARK(stepwise, "stepwise", {{"step", std::int64_t{3}}});
+
+METHOD_BENCHMARK(superob, "superob", {{"horizontal_mesh", 200.0}});
+METHOD_BENCHMARK(analysis, "analysis", {{"retain_fraction", 3000.0 / kObservations}, {"correlation_length_km", 250.0}});
+
+// An even cap of `count` observations of one channel, `spacing_km` apart, around a pole.
+ObservationSet even_cap(std::size_t count, double spacing_km) {
+  const double whole_km2 = 510.07e6;
+  const ObservationSet globe =
+      test::spiral_observations(static_cast<std::size_t>(whole_km2 / (spacing_km * spacing_km)), 1, 1);
+  std::vector<std::uint32_t> cap(std::min(count, globe.size()));
+  for (std::uint32_t i = 0; i < cap.size(); ++i) cap[i] = i;
+  return globe.select(cap);
+}
+
+// Analysis thinning with L = 150 km; arguments: observations, spacing in km, retained, threads, exchange.
+void analysis_on_a_cap(benchmark::State& state) {
+  const ThreadLimit limit(static_cast<int>(state.range(3)));
+  const ObservationSet set = even_cap(static_cast<std::size_t>(state.range(0)), static_cast<double>(state.range(1)));
+  Thinner thinner(*find_thinning_method("analysis"));
+  OptionTable table;
+  thinner.declare_options(table);
+  assign(table, "correlation_length_km", 150.0);
+  assign(table, "retain_count", state.range(2));
+  assign(table, "exchange", state.range(4) != 0);
+  for (auto _ : state) {
+    const PeakMemory memory;
+    const Result<Choice> choice = thinner.thin(set);
+    state.counters["retained"] = static_cast<double>(choice->retained.size());
+    state.counters["MiB"] = static_cast<double>(memory.bytes_above_start().value_or(0)) / (1 << 20);
+  }
+}
+BENCHMARK(analysis_on_a_cap)
+    ->Args({10000, 40, 400, 1, 0})
+    ->Args({10000, 40, 400, 1, 1})
+    ->Args({10000, 20, 1100, 1, 0})
+    ->Args({100000, 20, 11000, 1, 0})
+    ->Args({100000, 20, 11000, 2, 0})
+    ->Args({100000, 20, 11000, 1, 1})
+    ->Args({10000, 20, 400, 1, 1})
+    ->Args({100000, 20, 4000, 1, 1})
+    ->Args({1000000, 20, 40000, 1, 1})
+    ->Args({1000000, 20, 40000, 2, 1})
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace thin

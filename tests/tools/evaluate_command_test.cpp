@@ -150,5 +150,28 @@ TEST(EvaluationSettings, NamesWhatIsWrong) {
             "c.toml:1:11: evaluate.variant is a list of sections: write [[evaluate.variant]]");
 }
 
+// In any order of the observations, and the same with the share in the configuration.
+TEST_F(EvaluateCommand, CrossValidates) {
+  const std::string draws = "withhold_draws = 2\nwithhold_lengths_km = [200.0, 400.0]\nwithhold_error_ratios = [1.0]\n";
+  std::string configuration = kSmall;
+  configuration.insert(configuration.find("methods ="), draws);
+  ASSERT_EQ(evaluate(configuration, {"--withhold", "0.25", "--json", path("a.json")}), 0);
+  EXPECT_NE(output_.find("farthest_point"), std::string::npos) << output_;
+  ASSERT_EQ(evaluate(configuration, {"--withhold", "0.25", "--json", path("b.json"), "--shuffle", "3"}), 0);
+  EXPECT_EQ(read("a.json"), read("b.json"));
+  configuration.insert(configuration.find("methods ="), "withhold = 0.25\n");
+  ASSERT_EQ(evaluate(configuration, {"--json", path("c.json")}), 0);
+  EXPECT_EQ(read("a.json"), read("c.json"));
+
+  const auto json = nlohmann::json::parse(read("a.json"));
+  EXPECT_EQ(json["observations"]["withheld"], 375);
+  EXPECT_EQ(json["observations"]["thinned"], 1125);
+  EXPECT_EQ(json["observations"]["channels"].size(), 8U);
+  EXPECT_EQ(json["scores"][0]["set"], "all");
+  EXPECT_EQ(json["scores"][0]["relative_rms"].size(), 2U);
+  // all, and two sets and four variants to two numbers; each channel alone, then of all jointly each and the mean.
+  EXPECT_EQ(json["scores"].size(), (1 + 2 * 2 + 4 * 2) * (8 + 9));
+}
+
 }  // namespace
 }  // namespace thin
