@@ -23,9 +23,11 @@ constexpr double kDefaultLengthKm = 250;
 constexpr double kLeastFittedRatio = 0.4;
 constexpr double kLargestFittedRatio = 1;
 
-// So many retained in an area of L² are too many for a covariance cut off at 3L.
-constexpr double kManyPerSquareLength = 3;
-constexpr double kReachForMany = 3.5;
+// How far a covariance of one scale must reach, in L, for so many retained in an area of L² (local_analysis_test.cpp).
+double reach_needed(double retained_per_square_length) {
+  if (retained_per_square_length <= 3) return 3;
+  return retained_per_square_length <= 6.5 ? 3.25 : 3.5;
+}
 
 double per_square_length(double within_reach, const BackgroundCovariance& covariance) {
   const double reach_in_lengths = covariance.radius_km() / covariance.correlation_length_km;
@@ -189,8 +191,7 @@ Result<Choice> AnalysisThinning::choose(const ThinningInput& input) const {
   const double retained_per_square_length =
       retained_share *
       per_square_length(observations_within_reach(all.places, points, resolved.covariance), resolved.covariance);
-  if (retained_per_square_length > kManyPerSquareLength && !resolved.covariance.two_scales)
-    resolved.covariance.reach_in_lengths = kReachForMany;
+  if (!resolved.covariance.two_scales) resolved.covariance.reach_in_lengths = reach_needed(retained_per_square_length);
   if (Result<void> fits =
           expect_analysis_to_fit(all.places, points, resolved.covariance, retain_count, available_memory_bytes());
       !fits)

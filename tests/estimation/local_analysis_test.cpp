@@ -110,10 +110,11 @@ TEST_P(LocalAnalysisTest, GivingUpTheLastOneUndoesIt) {
 // The cut-off makes of B no true covariance: that must not show where as many are retained as anyone would.
 TEST(LocalAnalysis, VariancesStayAboveNothing) {
   struct Case {
-    std::size_t count;  // 3, 8 and 11 in an area of L²
+    std::size_t count;  // 3, 6.5, 8 and 11 in an area of L²
     BackgroundCovariance covariance;
   };
-  for (const Case& each : {Case{240, {250, false}}, Case{630, {250, false, 3.5}}, Case{900, {250, true}}}) {
+  for (const Case& each :
+       {Case{240, {250, false}}, Case{510, {250, false, 3.25}}, Case{630, {250, false, 3.5}}, Case{900, {250, true}}}) {
     const ObservationSet set = test::random_observations(each.count, 1, 6);
     std::vector<std::uint32_t> points;
     for (std::uint32_t p = 0; p < set.size(); p += 5) points.push_back(p);
