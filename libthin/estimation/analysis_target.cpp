@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "libthin/estimation/neighbourhood_table.h"
 #include "libthin/foundation/kd_tree.h"
@@ -92,6 +93,17 @@ std::vector<double> filter_estimates(const Places& places, std::span<const doubl
   return estimates;
 }
 
+double limit_for_channels(double limit, std::size_t channels) {
+  const auto false_alarms = [](double deviations) { return std::erfc(deviations / std::numbers::sqrt2); };
+  const double wanted = false_alarms(limit) / static_cast<double>(channels);
+  double low = limit, high = limit + 10;
+  while (high - low > 1e-9) {
+    const double middle = (low + high) / 2;
+    (false_alarms(middle) > wanted ? low : high) = middle;
+  }
+  return low;
+}
+
 std::vector<std::uint8_t> gross_errors(const Places& places, std::span<const double> values, std::size_t channels,
                                        const GaussianFilter& filter, double limit) {
   std::vector<std::uint8_t> flags(places.size(), 0);
@@ -100,7 +112,7 @@ std::vector<std::uint8_t> gross_errors(const Places& places, std::span<const dou
     const std::vector<double> missed = misses(places, values, channels, filter, flags);
     if (is_first)
       for (std::size_t c = 0; c < channels; ++c)
-        limits[c] = limit * kDeviationsPerMedian * median_magnitude(missed, c, channels);
+        limits[c] = limit_for_channels(limit, channels) * kDeviationsPerMedian * median_magnitude(missed, c, channels);
     std::fill(flags.begin(), flags.end(), std::uint8_t{0});
     for (std::size_t i = 0; i < missed.size(); ++i)
       if (std::abs(missed[i]) > limits[i % channels]) flags[i / channels] = 1;

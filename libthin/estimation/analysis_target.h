@@ -24,9 +24,14 @@ std::vector<double> filter_estimates(const Places& places, std::span<const doubl
                                      std::span<const std::uint32_t> points, const GaussianFilter& filter);
 
 // Flags the observations that the filter's estimate from the others misses, in any channel, by more than `limit` robust
-// standard deviations (1.4826 times the median of the absolute misses). Then all are tried once more against those
-// left, so that none is blamed for its neighbour. Without neighbours nothing is flagged.
+// standard deviations (1.4826 times the median of the absolute misses); that is for one channel, and with several as
+// much more as keeps false alarms at the number that one has by normal errors. Then all are tried once more against
+// those left, so that none is blamed for its neighbour. Without neighbours nothing is flagged.
 std::vector<std::uint8_t> gross_errors(const Places& places, std::span<const double> values, std::size_t channels,
                                        const GaussianFilter& filter, double limit);
+
+// As many standard deviations for each of so many channels as give in all of them the false alarms that `limit` gives
+// in one.
+double limit_for_channels(double limit, std::size_t channels);
 
 }  // namespace thin

@@ -5,7 +5,6 @@
 namespace thin {
 namespace {
 
-constexpr double kReachInLengths = 3;
 constexpr double kLongScale = 4.0 / 3;  // the short one is half of it
 
 }  // namespace
@@ -14,7 +13,7 @@ constexpr double kLongScale = 4.0 / 3;  // the short one is half of it
 GaussianFilter BackgroundCovariance::filter() const {
   const double length_km = correlation_length_km * (two_scales ? kLongScale : 1);
   return {.bandwidth_km = std::numbers::sqrt2 * length_km,
-          .reach_in_bandwidths = kReachInLengths / std::numbers::sqrt2};
+          .reach_in_bandwidths = reach_in_lengths / std::numbers::sqrt2};
 }
 
 // Of the weights w with the long scale, w to the fourth power are those with half of it.

@@ -23,6 +23,17 @@ constexpr double kDefaultLengthKm = 250;
 constexpr double kLeastFittedRatio = 0.4;
 constexpr double kLargestFittedRatio = 1;
 
+// How far a covariance of one scale must reach, in L, for so many retained in an area of L² (local_analysis_test.cpp).
+double reach_needed(double retained_per_square_length) {
+  if (retained_per_square_length <= 3) return 3;
+  return retained_per_square_length <= 6.5 ? 3.25 : 3.5;
+}
+
+double per_square_length(double within_reach, const BackgroundCovariance& covariance) {
+  const double reach_in_lengths = covariance.radius_km() / covariance.correlation_length_km;
+  return within_reach / (std::numbers::pi * reach_in_lengths * reach_in_lengths);
+}
+
 // Evaluation points as near as this to each other say the same.
 constexpr double kSpacingInLengths = 0.5;
 
@@ -135,7 +146,7 @@ AnalysisThinning::Resolved AnalysisThinning::resolve(const ThinningInput& input,
 }
 
 std::vector<std::string> AnalysisThinning::notes(const Resolved& resolved, const ThinningInput& input,
-                                                 const Believed& all, std::size_t retain_count, double near) const {
+                                                 const Believed& all, double retained_per_square_length) const {
   const BackgroundCovariance& covariance = resolved.covariance;
   std::vector<std::string> notes;
   if (!correlation_length_km_ || !error_ratio_)
@@ -146,16 +157,13 @@ std::vector<std::string> AnalysisThinning::notes(const Resolved& resolved, const
   if (contradicted > 0)
     notes.push_back(fmt::format("{} observations contradicted by their neighbours were not retained", contradicted));
   if (all.indices.empty()) return notes;
-  const double reach_in_lengths = covariance.radius_km() / covariance.correlation_length_km;
-  const double per_square_length = near / (std::numbers::pi * reach_in_lengths * reach_in_lengths);
   const AnalysisCircumstances circumstances{
       .variogram = resolved.variogram,
       .correlation_length_km = covariance.correlation_length_km,
       .length_is_given = correlation_length_km_.has_value(),
       .error_ratio = resolved.error_ratio,
       .ratio_is_given = error_ratio_.has_value(),
-      .retained_per_square_length =
-          per_square_length * static_cast<double>(retain_count) / static_cast<double>(all.indices.size()),
+      .retained_per_square_length = retained_per_square_length,
       .gross_error_share = static_cast<double>(contradicted) / static_cast<double>(input.size()),
       .values_are_innovations = input.observations.value_kind == ValueKind::innovation};
   for (std::string& warning : analysis_warnings(circumstances)) notes.push_back(std::move(warning));
@@ -166,7 +174,7 @@ Result<Choice> AnalysisThinning::choose(const ThinningInput& input) const {
   Choice choice;
   const std::size_t channels = input.channel_count();
   const std::vector<double> values = without_large_means(input, choice.notes);
-  const Resolved resolved = resolve(input, values);
+  Resolved resolved = resolve(input, values);
   const GaussianFilter filter{kTargetBandwidthInLengths * resolved.covariance.correlation_length_km};
   choice.bandwidth_km = filter.bandwidth_km;
 
@@ -178,12 +186,17 @@ Result<Choice> AnalysisThinning::choose(const ThinningInput& input) const {
   const double spacing_km =
       evaluation_spacing_km_.value_or(kSpacingInLengths * resolved.covariance.correlation_length_km);
   const std::vector<std::uint32_t> points = spread_places(all.places, spacing_km);
+  const double retained_share =
+      static_cast<double>(retain_count) / static_cast<double>(std::max<std::size_t>(all.indices.size(), 1));
+  const double retained_per_square_length =
+      retained_share *
+      per_square_length(observations_within_reach(all.places, points, resolved.covariance), resolved.covariance);
+  if (!resolved.covariance.two_scales) resolved.covariance.reach_in_lengths = reach_needed(retained_per_square_length);
   if (Result<void> fits =
           expect_analysis_to_fit(all.places, points, resolved.covariance, retain_count, available_memory_bytes());
       !fits)
     return fits.error();
-  for (std::string& note :
-       notes(resolved, input, all, retain_count, observations_within_reach(all.places, points, resolved.covariance)))
+  for (std::string& note : notes(resolved, input, all, retained_per_square_length))
     choice.notes.push_back(std::move(note));
 
   // Of the mean square of the values the signal has so much, the noise the rest.

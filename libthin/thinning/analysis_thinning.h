@@ -39,9 +39,8 @@ class AnalysisThinning : public ThinningMethod {
   };
 
   Resolved resolve(const ThinningInput& input, std::span<const double> values) const;
-  // near: how many observations are within reach of one.
   std::vector<std::string> notes(const Resolved& resolved, const ThinningInput& input, const Believed& all,
-                                 std::size_t retain_count, double near) const;
+                                 double retained_per_square_length) const;
 
   std::optional<double> correlation_length_km_;
   LengthScales length_scales_ = LengthScales::automatic;

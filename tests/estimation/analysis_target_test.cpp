@@ -40,6 +40,14 @@ TEST(AnalysisTarget, SpreadPlacesKeepApartAndLeaveNoGap) {
   }
 }
 
+TEST(AnalysisTarget, LimitsOfSeveralChannelsRaiseNoMoreFalseAlarms) {
+  EXPECT_NEAR(limit_for_channels(3, 1), 3, 1e-8);
+  for (const std::size_t channels : {2U, 12U}) {
+    const double limit = limit_for_channels(3, channels);
+    EXPECT_NEAR(std::erfc(limit / std::sqrt(2.0)) * static_cast<double>(channels), std::erfc(3 / std::sqrt(2.0)), 1e-9);
+  }
+}
+
 TEST(AnalysisTarget, GrossErrorsAreThoseThatNeighboursContradictAndNotTheNeighbours) {
   ObservationSet set = test::random_observations(2000, 2, 3);
   std::vector<std::uint8_t> planted(set.size(), 0);

@@ -107,5 +107,26 @@ TEST_P(LocalAnalysisTest, GivingUpTheLastOneUndoesIt) {
   EXPECT_NEAR(analysis.tracked_increment(33), increment[1], 1e-9 * before);
 }
 
+// The cut-off makes of B no true covariance: that must not show where as many are retained as anyone would.
+TEST(LocalAnalysis, VariancesStayAboveNothing) {
+  struct Case {
+    std::size_t count;  // 3, 6.5, 8 and 11 in an area of L²
+    BackgroundCovariance covariance;
+  };
+  for (const Case& each :
+       {Case{240, {250, false}}, Case{510, {250, false, 3.25}}, Case{630, {250, false, 3.5}}, Case{900, {250, true}}}) {
+    const ObservationSet set = test::random_observations(each.count, 1, 6);
+    std::vector<std::uint32_t> points;
+    for (std::uint32_t p = 0; p < set.size(); p += 5) points.push_back(p);
+    LocalAnalysis analysis(places_of(set), set.values, 1, points, std::vector<double>(points.size(), 0.0),
+                           {.covariance = each.covariance, .error_ratio = 0.4, .coverage = 0.2});
+    for (std::uint32_t p = 0; p < set.size(); ++p) analysis.change_state(p);
+    for (std::uint32_t p = 0; p < set.size(); ++p) {
+      ASSERT_GT(analysis.variance(p), 0) << each.count;
+      ASSERT_LT(analysis.variance(p), 0.16) << each.count;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace thin

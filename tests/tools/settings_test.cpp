@@ -60,6 +60,12 @@ TEST(Settings, NameWhatIsWrongInThePreparation) {
             "first guess");
 }
 
+TEST(Settings, FlagsDoNotGoWithAMethodThatMakesObservations) {
+  EXPECT_EQ(problem_of("[thinning]\nmethod = \"superob\"\n"), "");
+  EXPECT_NE(problem_of("[thinning]\nmethod = \"superob\"\n[output]\nmode = \"flag\"\n").find("CF netCDF alone"),
+            std::string::npos);
+}
+
 TEST(Settings, LeaveTheDaemonsSectionsToIt) {
   EXPECT_EQ(problem_of("[thinning]\nmethod = \"box\"\n[daemon]\nanything = 1\n[window]\nelse = 2\n"), "");
 }

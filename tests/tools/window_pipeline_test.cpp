@@ -85,6 +85,36 @@ TEST(WindowPipeline, RetainsTheShareAndCountsEverything) {
   EXPECT_EQ(read_back->observations.size(), 180U);
 }
 
+// What a method makes goes out as CF; of the inputs themselves there is no output.
+TEST(WindowPipeline, WritesTheMeansOfSuperobbingAsCf) {
+  const ScratchFolder scratch;
+  const auto path = test::write_synthetic_file(scratch.path("a"), "NOAA-15", kSyntheticBeginMs, 60);
+  const Settings settings = settings_of("[thinning]\nmethod = \"superob\"\nhorizontal_mesh = 300\n");
+  const auto outcome = thin_window(read_all({path}), {}, {}, settings, folder(scratch, "out"));
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  const auto contents = contents_of(scratch.path("out"));
+  EXPECT_EQ(contents.size(), 2U);
+  EXPECT_TRUE(contents.contains("superobs-amsua.nc"));
+
+  const auto means = read_observations(scratch.path("out/superobs-amsua.nc"));
+  ASSERT_TRUE(means) << means.error().message;
+  ASSERT_EQ(means->observations.size(), outcome->members.size());
+  const auto original = read_observations(path);
+  ASSERT_TRUE(original);
+  std::size_t members = 0;
+  for (std::size_t i = 0; i < outcome->members.size(); ++i) {
+    double sum = 0;
+    for (const std::uint32_t p : outcome->members[i])
+      sum += original->observations.values_of(outcome->prepared.origin[p])[5];
+    members += outcome->members[i].size();
+    EXPECT_NEAR(means->observations.values_of(i)[5], sum / static_cast<double>(outcome->members[i].size()), 1e-4);
+  }
+  EXPECT_EQ(members, 1800U);
+  const EstimationError& error = outcome->errors.at(Instrument::amsua).whole;
+  EXPECT_GT(error.mean_squared_k2, 0);
+  EXPECT_LT(error.mean_squared_k2, 0.5 * error.empty_mean_squared_k2);
+}
+
 // Two windows side by side: every observation that one keeps is in its own time, and nothing is in both.
 TEST(WindowPipeline, AFileAcrossTwoWindowsIsSharedBetweenThem) {
   const ScratchFolder scratch;
