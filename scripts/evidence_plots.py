@@ -5,7 +5,10 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
 
+import evaluation_plots  # noqa: E402
 from evaluation_plots import save, thousands  # noqa: E402
+
+evaluation_plots.MOST_BYTES = 120_000
 
 COLOURS = ["#1f5fa8", "#5b8c5a", "#2a9d8f", "#6d4c41", "#c77dba", "#7a9a01", "#4c4c9d", "#8c564b", "#00798c", "#d4b106",
            "#e07a9a", "#5c8d89", "#444444", "#b08d57", "#777777"]
