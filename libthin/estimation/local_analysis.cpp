@@ -18,9 +18,9 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 // What keeps k on its side of 0 where the cut-off has bent a variance: variances within 0 .. (1 - kLeastMargin) r².
 constexpr double kLeastMargin = 1e-3;
 
-// One channel needs two numbers for each observation, g and s; more go in whole groups of lanes.
+// Rows of one channel stand close together, others in whole groups of lanes.
 std::size_t row_width(std::size_t channels) {
-  return channels == 1 ? 2 : padded(channels + 1);
+  return channels == 1 ? 1 : padded(channels);
 }
 
 // The observations reached so far; each once.
@@ -36,44 +36,91 @@ struct Row {
   std::size_t size;
   double step;              // k times the column at the point
   const double* misfit;     // before
-  const double* misfit_to;  // after; both 0 in the place of s
+  const double* misfit_to;  // after
 };
 
-// Moves g and s of the row's observations from the old covariances and misfit to the new ones.
-template <std::size_t Width, class Reached>
-inline __attribute__((always_inline)) void update_row(const Row& row, Reached* reached, std::uint32_t step,
-                                                      double* sums, std::size_t channels, std::size_t row_width,
-                                                      Touched& touched) {
-  const std::size_t width = Width ? Width : row_width;
-  for (std::size_t i = 0; i < row.size; ++i) {
-    const std::uint32_t p = row.observation[i];
-    const double before = row.covariance[i];
-    const double after = before - row.step * reached[p].column;
-    touched.observations[touched.count] = p;
-    touched.count += reached[p].at_step != step;
-    reached[p].at_step = step;
-    row.covariance[i] = after;
-    double* sum = sums + p * width;
-    if constexpr (Width == 2) {
-      sum[0] += after * row.misfit_to[0] - before * row.misfit[0];
-      sum[1] += after * after - before * before;
-    } else {
-      for (std::size_t c = 0; c < width; c += kLaneCount)
-        store(load(sum + c) + (load(row.misfit_to + c) * after - load(row.misfit + c) * before), sum + c);
-      sum[channels] += after * after - before * before;
-    }
+// What changes of the observations; n elements each, g n x width.
+struct Moved {
+  const double* column;  // of the observation that changes state; 0 beyond its reach
+  std::uint32_t* at_step;
+  double* g;
+  double* s;
+  std::uint32_t step;
+};
+
+inline __attribute__((always_inline)) void touch(std::uint32_t p, const Moved& all, Touched& touched) {
+  touched.observations[touched.count] = p;
+  touched.count += all.at_step[p] != all.step;
+  all.at_step[p] = all.step;
+}
+
+template <std::size_t Width>
+inline __attribute__((always_inline)) void move_g(std::uint32_t p, double before, double after, const Row& row,
+                                                  const Moved& all, std::size_t row_width) {
+  if constexpr (Width == 1) {
+    all.g[p] += after * row.misfit_to[0] - before * row.misfit[0];
+  } else {
+    const std::size_t width = Width ? Width : row_width;
+    double* g = all.g + p * width;
+    for (std::size_t c = 0; c < width; c += kLaneCount)
+      store(load(g + c) + (load(row.misfit_to + c) * after - load(row.misfit + c) * before), g + c);
   }
 }
 
-template <class Reached>
-THIN_VECTOR_CLONES void update_any_row(const Row& row, Reached* reached, std::uint32_t step, double* sums,
-                                       std::size_t channels, std::size_t width, Touched& touched) {
-  if (width == 2)
-    update_row<2>(row, reached, step, sums, channels, width, touched);
+// Moves g and s of the row's observations from the old covariances and misfit to the new ones. Neighbours in place are
+// mostly neighbours in order, as fields of view along a scan line are: four in a row are taken at once, to the same
+// bits.
+template <std::size_t Width>
+inline __attribute__((always_inline)) void update_row(const Row& row, const Moved& all, std::size_t row_width,
+                                                      Touched& touched) {
+  for (std::size_t i = 0; i < row.size;) {
+    const std::uint32_t p = row.observation[i];
+    if (i + kLaneCount <= row.size && row.observation[i + kLaneCount - 1] == p + kLaneCount - 1) {
+      const Lanes before = load(row.covariance + i);
+      const Lanes after = before - row.step * load(all.column + p);
+      store(after, row.covariance + i);
+      store(load(all.s + p) + (after * after - before * before), all.s + p);
+      if constexpr (Width == 1)
+        store(load(all.g + p) + (after * row.misfit_to[0] - before * row.misfit[0]), all.g + p);
+      else
+        for (std::uint32_t lane = 0; lane < kLaneCount; ++lane)
+          move_g<Width>(p + lane, before[lane], after[lane], row, all, row_width);
+      for (std::uint32_t lane = 0; lane < kLaneCount; ++lane) touch(p + lane, all, touched);
+      i += kLaneCount;
+      continue;
+    }
+    const double before = row.covariance[i];
+    const double after = before - row.step * all.column[p];
+    row.covariance[i] = after;
+    all.s[p] += after * after - before * before;
+    move_g<Width>(p, before, after, row, all, row_width);
+    touch(p, all, touched);
+    ++i;
+  }
+}
+
+THIN_VECTOR_CLONES void update_any_row(const Row& row, const Moved& all, std::size_t width, Touched& touched) {
+  if (width == 1)
+    update_row<1>(row, all, width, touched);
   else if (width == 4)
-    update_row<4>(row, reached, step, sums, channels, width, touched);
+    update_row<4>(row, all, width, touched);
   else
-    update_row<0>(row, reached, step, sums, channels, width, touched);
+    update_row<0>(row, all, width, touched);
+}
+
+// Subtracts a multiple of u from what is kept by observation.
+THIN_VECTOR_CLONES void subtract_multiple(const std::uint32_t* observation, const double* u, std::size_t size,
+                                          double factor, double* from) {
+  for (std::size_t i = 0; i < size;) {
+    const std::uint32_t p = observation[i];
+    if (i + kLaneCount <= size && observation[i + kLaneCount - 1] == p + kLaneCount - 1) {
+      store(load(from + p) - load(u + i) * factor, from + p);
+      i += kLaneCount;
+      continue;
+    }
+    from[p] -= u[i] * factor;
+    ++i;
+  }
 }
 
 }  // namespace
@@ -92,7 +139,8 @@ LocalAnalysis::LocalAnalysis(const Places& observations, std::span<const double>
       variances_(observations.size(), 1.0),
       increments_(observations.size(), 0.0),
       retained_(observations.size(), 0),
-      reached_(observations.size()),
+      column_at_(observations.size(), 0.0),
+      changed_at_(observations.size(), 0),
       work_(observations.size(), 0.0),
       touched_(observations.size() + 1),
       last_changed_(kNone) {
@@ -104,16 +152,17 @@ LocalAnalysis::LocalAnalysis(const Places& observations, std::span<const double>
   model_.covariance.from_weights(pair_covariance_);
 
   assign_in_large_pages(misfits_, points_.size() * width_);
-  assign_in_large_pages(sums_, observations.size() * width_);
+  assign_in_large_pages(g_, observations.size() * width_);
+  assign_in_large_pages(s_, observations.size());
   for (std::uint32_t q = 0; q < points_.size(); ++q) {
     point_at_[points_[q]] = q;
     std::copy_n(targets.begin() + static_cast<std::ptrdiff_t>(q * channels_), channels_,
                 misfits_.begin() + static_cast<std::ptrdiff_t>(q * width_));
     for (std::uint64_t i = row_begin_[q]; i < row_begin_[q + 1]; ++i) {
-      double* sum = &sums_[pair_observation_[i] * width_];
+      double* g = &g_[pair_observation_[i] * width_];
       const double covariance = pair_covariance_[i];
-      for (std::size_t c = 0; c < channels_; ++c) sum[c] += covariance * misfits_[q * width_ + c];
-      sum[channels_] += covariance * covariance;
+      for (std::size_t c = 0; c < channels_; ++c) g[c] += covariance * misfits_[q * width_ + c];
+      s_[pair_observation_[i]] += covariance * covariance;
     }
   }
   if (points_.size() < observations.size()) terms_near_.resize(observations.size());
@@ -128,14 +177,14 @@ double LocalAnalysis::gain_factor(std::uint32_t p) const {
 
 double LocalAnalysis::fresh_increment(std::uint32_t p) const {
   const double k = gain_factor(p);
-  const double* sum = &sums_[p * width_];
+  const double* g = &g_[p * width_];
   const double* departure = &departures_[p * channels_];
   double along = 0, squared = 0;
   for (std::size_t c = 0; c < channels_; ++c) {
-    along += departure[c] * sum[c];
+    along += departure[c] * g[c];
     squared += departure[c] * departure[c];
   }
-  return k * ((k * squared - model_.coverage) * sum[channels_] - 2 * along);
+  return k * ((k * squared - model_.coverage) * s_[p] - 2 * along);
 }
 
 // near_ and column_: the observations within reach of p, and the column of C there.
@@ -167,7 +216,7 @@ void LocalAnalysis::add_terms(std::uint32_t p) {
     const auto place = std::lower_bound(term.observations.begin(), term.observations.end(), p);
     const double factor = term.sign * term.u[static_cast<std::size_t>(place - term.observations.begin())];
     // What is beyond the reach of p is changed too, and never read.
-    for (std::size_t i = 0; i < term.u.size(); ++i) work_[term.observations[i]] -= factor * term.u[i];
+    subtract_multiple(term.observations.data(), term.u.data(), term.u.size(), factor, work_.data());
   }
   for (std::size_t i = 0; i < near_.size(); ++i) column_[i] = work_[near_[i]];
 }
@@ -186,7 +235,7 @@ void LocalAnalysis::update_rows(std::uint32_t p, double k) {
     const std::uint64_t begin = row_begin_[q], end = row_begin_[q + 1];
     update_any_row(
         Row{&pair_observation_[begin], &pair_covariance_[begin], end - begin, step, misfit.data(), misfit_to.data()},
-        reached_.data(), step_, sums_.data(), channels_, width_, touched);
+        Moved{column_at_.data(), changed_at_.data(), g_.data(), s_.data(), step_}, width_, touched);
   }
   touched_count_ = touched.count;
 }
@@ -198,9 +247,9 @@ void LocalAnalysis::update_observations(std::uint32_t p, double k) {
     const std::uint32_t other = near_[i];
     variances_[other] -= k * column_[i] * column_[i];
     for (std::size_t c = 0; c < channels_; ++c) departures_[other * channels_ + c] -= k * column_[i] * departure[c];
-    reached_[other].column = 0;
-    if (reached_[other].at_step == step_) continue;
-    reached_[other].at_step = step_;
+    column_at_[other] = 0;
+    if (changed_at_[other] == step_) continue;
+    changed_at_[other] = step_;
     touched_[touched_count_++] = other;
   }
 }
@@ -225,7 +274,7 @@ void LocalAnalysis::change_state(std::uint32_t p) {
   fallen_.clear();
   find_column(p);
   const double k = gain_factor(p);
-  for (std::size_t i = 0; i < near_.size(); ++i) reached_[near_[i]].column = column_[i];
+  for (std::size_t i = 0; i < near_.size(); ++i) column_at_[near_[i]] = column_[i];
   update_rows(p, k);
   update_observations(p, k);
   if (!terms_near_.empty()) keep_term(p, k);

@@ -61,7 +61,7 @@ class LocalAnalysis {
 
   // Counts changes of state; the increment of p is as it was at `step` unless changed_since(p, step).
   std::uint32_t step() const { return step_; }
-  bool changed_since(std::uint32_t p, std::uint32_t step) const { return reached_[p].at_step > step; }
+  bool changed_since(std::uint32_t p, std::uint32_t step) const { return changed_at_[p] > step; }
 
   bool is_retained(std::uint32_t p) const { return retained_[p]; }
   std::size_t retained_count() const { return retained_count_; }
@@ -83,10 +83,6 @@ class LocalAnalysis {
     std::vector<double> u;
     double sign;
   };
-  struct Reached {
-    double column = 0;          // of the observation that changes state; 0 beyond its reach
-    std::uint32_t at_step = 0;  // its increment last changed
-  };
 
   void find_column(std::uint32_t p);
   void keep_term(std::uint32_t p, double k);
@@ -97,7 +93,7 @@ class LocalAnalysis {
   double gain_factor(std::uint32_t p) const;
 
   std::size_t channels_;
-  std::size_t width_;  // of the rows below: the channels, and one more, filled up
+  std::size_t width_;  // of the rows below: the channels, filled up
   AnalysisModel model_;
   const Places places_;
   KdTree tree_;
@@ -111,13 +107,15 @@ class LocalAnalysis {
   std::vector<double> misfits_;  // |Q| x width: T - a
 
   // By observation.
-  std::vector<double> sums_;        // n x width: g, then s
+  std::vector<double> g_;  // n x width
+  std::vector<double> s_;
   std::vector<double> departures_;  // n x channels
   std::vector<double> variances_;
   std::vector<double> increments_;
   std::vector<std::uint8_t> retained_;
   std::size_t retained_count_ = 0;
-  std::vector<Reached> reached_;
+  std::vector<double> column_at_;          // of the observation that changes state; 0 beyond its reach
+  std::vector<std::uint32_t> changed_at_;  // the step at which its increment last changed
 
   std::vector<Term> terms_;                             // empty where all observations are evaluation points
   std::vector<std::vector<std::uint32_t>> terms_near_;  // by observation that is none: the terms that reach it
