@@ -20,7 +20,8 @@ bool set(Pointer& pointer, GlFunction function) {
   X(glBindRenderbuffer)                                                                                                \
   X(glBindTexture)                                                                                                     \
   X(glBindVertexArray)                                                                                                 \
-  X(glBlendFunc) X(glBufferData) X(glCheckFramebufferStatus) X(glClear) X(glClearColor) X(glClearDepth) X(glColorMask) \
+  X(glBlendFunc)                                                                                                       \
+  X(glBufferData) X(glCheckFramebufferStatus) X(glClear) X(glClearColor) X(glClearDepth) X(glColorMask)                \
       X(glCompileShader) X(glCreateProgram) X(glCreateShader) X(glDeleteBuffers) X(glDeleteFramebuffers)               \
           X(glDeleteProgram) X(glDeleteRenderbuffers) X(glDeleteShader) X(glDeleteTextures) X(glDeleteVertexArrays)    \
               X(glDepthFunc) X(glDepthMask) X(glDisable) X(glDrawArrays) X(glDrawElements) X(glDrawElementsBaseVertex) \
