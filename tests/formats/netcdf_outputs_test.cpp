@@ -397,7 +397,9 @@ TEST_F(NetcdfOutputsTest, BufrHasNoFlags) {
   const std::string file = scratch_.write("a.bufr", test::make_message(test::test_soundings(3)));
   const auto refused = extract_observations(file, std::vector<SourceReference>{{0, 0, 1}}, path("out"), flag_mode());
   ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().kind, ErrorKind::configuration);
+  EXPECT_EQ(refused.error().kind, ErrorKind::input);
+  EXPECT_EQ(check_output("bufr", flag_mode()).error().kind, ErrorKind::input);
+  EXPECT_TRUE(check_output("ioda", flag_mode()).ok());
 }
 
 }  // namespace
