@@ -1,5 +1,7 @@
 """Measures emap against the thesis and today's coders, and writes docs/results/compression.md with its pictures. Called by
-scripts/reproduce compression [PART...]; parts: partition, fit, distribution, thesis, curves, speed (all of them unless named)."""
+scripts/reproduce compression [PART...]; parts: partition, fit, distribution, thesis, curves, speed (all of them unless named).
+Each part's section is kept under build/results/compression with the commit that it measured; the page is put together once
+all of them are there."""
 
 import csv
 import json
@@ -21,7 +23,8 @@ import numpy as np  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = ROOT / "build/release/bin"
-WORK = ROOT / "build/results/compression"
+BASE = ROOT / "build/results/compression"
+WORK = BASE  # of each part a folder of its own
 SHARED = pathlib.Path(os.environ.get("THIN_SHARED_DATA", ROOT / "../shared/data")).resolve()
 MODELS = SHARED / "models"
 TOOL = SHARED.parent / "tools/surfdist.cpp"
@@ -82,7 +85,7 @@ def build_surfdist():
     """The independent tool where it is at hand, else emap's own."""
     if not TOOL.is_file():
         return None
-    program = WORK / "surfdist"
+    program = BASE / "surfdist"
     if not program.is_file():
         run("g++", "-O3", "-std=c++17", "-pthread", TOOL, "-o", program)
     return program
@@ -432,6 +435,39 @@ PARTS = {"partition": partition_part, "fit": fit_part, "distribution": distribut
          "thesis": thesis_part, "curves": curves_part, "speed": speed_part}
 
 
+def commit():
+    return subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True, check=False).stdout.strip()
+
+
+def measure(name):
+    """Runs a part, and keeps what it says."""
+    global WORK
+    WORK = BASE / name
+    shutil.rmtree(WORK, ignore_errors=True)
+    WORK.mkdir(parents=True)
+    problems.clear()
+    began = time.perf_counter()
+    lines = PARTS[name]()
+    told = {"lines": lines, "problems": list(problems), "minutes": (time.perf_counter() - began) / 60, "commit": commit()}
+    (BASE / f"{name}.json").write_text(json.dumps(told), encoding="utf-8")
+
+
+def write_page(parts):
+    page = ["# Compression of scanned surfaces", "",
+            f"Written by `scripts/reproduce compression`. Machine: {os.cpu_count()} cores, {platform.machine()}. E_rms in 1e-4 of the bounding "
+            "box's diagonal; PSNR = 20 log10(diagonal / E_rms); distances by "
+            + ("`surfdist`, an independent tool" if SURFDIST else "`emap compare`") + ", 200,000 samples each way.", ""]
+    for part in parts.values():
+        page += part["lines"]
+    if short := [problem for part in parts.values() for problem in part["problems"]]:
+        page += ["## What falls short", ""] + [f"- {problem}" for problem in short] + [""]
+    page += ["Minutes, and the commit that was measured: " +
+             ", ".join(f"{name} {part['minutes']:.1f} ({part['commit']})" for name, part in parts.items()) + ".", ""]
+    PAGE.write_text("\n".join(page), encoding="utf-8")
+    print("written:", PAGE)
+    return short
+
+
 def main():
     global SURFDIST
     if not MODELS.is_dir():
@@ -439,24 +475,16 @@ def main():
     named = sys.argv[1:] or list(PARTS)
     if unknown := set(named) - set(PARTS):
         sys.exit(f"no such part: {', '.join(sorted(unknown))}; there are {', '.join(PARTS)}")
-    shutil.rmtree(WORK, ignore_errors=True)
-    WORK.mkdir(parents=True)
+    BASE.mkdir(parents=True, exist_ok=True)
     SURFDIST = build_surfdist()
-    began = time.perf_counter()
-    page = ["# Compression of scanned surfaces", "",
-            f"Written by `scripts/reproduce compression`. Machine: {os.cpu_count()} cores, {platform.machine()}. E_rms in 1e-4 of the bounding "
-            "box's diagonal; PSNR = 20 log10(diagonal / E_rms); distances by "
-            + ("`surfdist`, an independent tool" if SURFDIST else "`emap compare`") + ", 200,000 samples each way.", ""]
     for name in named:
-        page += PARTS[name]()
-    if problems:
-        page += ["## What falls short", ""] + [f"- {problem}" for problem in problems] + [""]
-    page += [f"All of it took {(time.perf_counter() - began) / 60:.0f} minutes.", ""]
-    target = PAGE if named == list(PARTS) else WORK / "compression.md"
-    target.write_text("\n".join(page), encoding="utf-8")
-    print("written:", target)
-    if problems:
-        sys.exit(f"{len(problems)} checks failed")
+        measure(name)
+    kept = {name: BASE / f"{name}.json" for name in PARTS}
+    if missing := [name for name, path in kept.items() if not path.is_file()]:
+        print("The page waits for:", ", ".join(missing))
+        return
+    if short := write_page({name: json.loads(path.read_text(encoding="utf-8")) for name, path in kept.items()}):
+        sys.exit(f"{len(short)} checks failed")
 
 
 SURFDIST = None
