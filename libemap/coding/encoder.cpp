@@ -24,8 +24,9 @@ constexpr std::uint32_t kMostSamples = 6000;
 constexpr double kClose = 0.985;             // of a wanted size or error: near enough
 constexpr double kResolutionRatio = 1.2599;  // between resolutions that are tried: the cube root of two
 
-constexpr double kCoarsestError = 1e-3;      // in diagonals, that partitions are made for
-constexpr std::size_t kManyPoints = 200000;  // beyond which only one other partition is tried
+constexpr double kCoarsestError = 1e-3;  // in diagonals, that partitions are made for
+// Beyond which other partitions, which take seconds each, are tried only where the first does not lead to the target.
+constexpr std::size_t kManyPoints = 200000;
 
 // A surface sampled at one resolution, ready to be written.
 struct Resolution {
@@ -78,6 +79,7 @@ class Search {
 
   // Of the partitions that suit such errors, the one that does best at this resolution stays.
   Trial with_best_partition(Trial best) {
+    if (best.meets_target && surface_->point_count() > kManyPoints) return best;
     const double error = std::clamp(options_.psnr_db    ? largest_error_
                                     : best.meets_target ? best.error
                                                         : kCoarsestError * diagonal_,
@@ -103,7 +105,6 @@ class Search {
   std::vector<PartitionOptions> partitions_for(double error) const {
     std::vector<PartitionOptions> partitions;
     for (const int smoothing_rounds : {8, 20, 60}) {
-      if (partitions.size() == 1 && surface_->point_count() > kManyPoints) break;
       PartitionOptions partition;
       partition.smoothing_rounds = smoothing_rounds;
       partition.fold_tolerance = std::max(partition.fold_tolerance, error);
