@@ -9,7 +9,13 @@
 namespace thin {
 
 void parallel_ranges(std::size_t count, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, std::max<std::size_t>(grain, 1)),
+  grain = std::max<std::size_t>(grain, 1);
+  // Now and then a worker that oneTBB has just started takes a range in spite of a limit to one thread.
+  if (tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) < 2) {
+    for (std::size_t begin = 0; begin < count; begin += grain) body(begin, std::min(begin + grain, count));
+    return;
+  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
                     [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); });
 }
 
