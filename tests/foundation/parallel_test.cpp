@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <set>
 #include <thread>
@@ -21,15 +22,27 @@ TEST(ParallelRanges, CoversEveryPlaceOnce) {
   }
 }
 
-TEST(ThreadLimit, OneMeansThisThreadAlone) {
-  const ThreadLimit limit(1);
+// Those that take a part in a loop long enough for all to wake up.
+std::set<std::thread::id> threads_of_a_long_loop() {
   std::mutex mutex;
   std::set<std::thread::id> threads;
-  parallel_ranges(1000, 1, [&](std::size_t, std::size_t) {
+  parallel_ranges(200, 1, [&](std::size_t, std::size_t) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(1);
+    while (std::chrono::steady_clock::now() < end) {
+    }
     const std::lock_guard lock(mutex);
     threads.insert(std::this_thread::get_id());
   });
-  EXPECT_EQ(threads, std::set{std::this_thread::get_id()});
+  return threads;
+}
+
+TEST(ThreadLimit, OneMeansThisThreadAloneWhileItLives) {
+  {
+    const ThreadLimit limit(1);
+    EXPECT_EQ(threads_of_a_long_loop(), std::set{std::this_thread::get_id()});
+  }
+  if (std::thread::hardware_concurrency() == 1) GTEST_SKIP() << "one core: there is nothing to limit";
+  EXPECT_GT(threads_of_a_long_loop().size(), 1U);
 }
 
 }  // namespace
