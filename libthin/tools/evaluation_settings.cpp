@@ -47,7 +47,8 @@ Result<EvaluationSettings> read_evaluation_settings(Configuration configuration)
     configuration.add_problem("preparation", conflict->key, conflict->problem);
   declare_run_options(run, settings.threads);
   configuration.read_section("run", run);
-  for (const char* section : {"thinning", "output", "daemon", "window", "twin", "cycle"}) configuration.ignore_section(section);
+  for (const char* section : {"thinning", "output", "daemon", "window", "twin", "cycle"})
+    configuration.ignore_section(section);
   if (Result<void> good = configuration.finish(); !good) return good.error();
   keep_resolved("evaluate", evaluation.without({"repetitions"}), settings);
   keep_resolved("synthetic", synthetic, settings);

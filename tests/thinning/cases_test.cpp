@@ -48,8 +48,7 @@ struct Case {
 
 TEST(Cases, RetainWhatTheySay) {
   std::size_t count = 0;
-  for (const auto& file :
-       std::filesystem::directory_iterator(PROJECT_FOLDER "/tests/cases")) {
+  for (const auto& file : std::filesystem::directory_iterator(PROJECT_FOLDER "/tests/cases")) {
     SCOPED_TRACE(file.path().filename().string());
     ++count;
     Result<Configuration> configuration = Configuration::read(file.path());
