@@ -66,7 +66,8 @@ def check(condition, what):
 def run(*words):
     began = time.perf_counter()
     done = subprocess.run([str(word) for word in words], capture_output=True, text=True, check=False)
-    check(done.returncode == 0, " ".join(map(str, words)) + ": " + done.stderr.strip()[-300:])
+    said = " ".join(pathlib.Path(word).name if isinstance(word, pathlib.Path) else str(word) for word in words)
+    check(done.returncode == 0, said + ": " + done.stderr.strip()[-300:])
     return done.stdout, time.perf_counter() - began
 
 
