@@ -192,7 +192,8 @@ Result<Settings> read_settings(const std::string& path) {
   settings.window.declare(window_table);
   configuration->read_section("daemon", daemon_table);
   configuration->read_section("window", window_table);
-  for (const char* section : {"thinning", "preparation", "output", "run", "input"})
+  for (const char* section :
+       {"thinning", "preparation", "output", "run", "input", "evaluate", "synthetic", "twin", "cycle"})
     configuration->ignore_section(section);
 
   complete_paths(settings.daemon, fs::path(settings.path).parent_path());

@@ -3,45 +3,99 @@
 namespace emap {
 namespace {
 
-template <class Pointer>
-bool set(Pointer& pointer, GlFunction function) {
-  pointer = reinterpret_cast<Pointer>(function);
-  return function != nullptr;
-}
+struct Function {
+  const char* name;
+  void (*set)(GlFunction);
+};
+
+#define EMAP_GL(name)                                                                                        \
+  {                                                                                                          \
+    "gl" #name, [](GlFunction found) { epoxy_gl##name = reinterpret_cast<decltype(epoxy_gl##name)>(found); } \
+  }
+
+constexpr Function kFunctions[] = {
+    EMAP_GL(ActiveTexture),
+    EMAP_GL(AttachShader),
+    EMAP_GL(BindAttribLocation),
+    EMAP_GL(BindBuffer),
+    EMAP_GL(BindFramebuffer),
+    EMAP_GL(BindRenderbuffer),
+    EMAP_GL(BindTexture),
+    EMAP_GL(BindVertexArray),
+    EMAP_GL(BlendFunc),
+    EMAP_GL(BufferData),
+    EMAP_GL(CheckFramebufferStatus),
+    EMAP_GL(Clear),
+    EMAP_GL(ClearColor),
+    EMAP_GL(ClearDepth),
+    EMAP_GL(ColorMask),
+    EMAP_GL(CompileShader),
+    EMAP_GL(CreateProgram),
+    EMAP_GL(CreateShader),
+    EMAP_GL(DeleteBuffers),
+    EMAP_GL(DeleteFramebuffers),
+    EMAP_GL(DeleteProgram),
+    EMAP_GL(DeleteRenderbuffers),
+    EMAP_GL(DeleteShader),
+    EMAP_GL(DeleteTextures),
+    EMAP_GL(DeleteVertexArrays),
+    EMAP_GL(DepthFunc),
+    EMAP_GL(DepthMask),
+    EMAP_GL(Disable),
+    EMAP_GL(DrawArrays),
+    EMAP_GL(DrawElements),
+    EMAP_GL(DrawElementsBaseVertex),
+    EMAP_GL(Enable),
+    EMAP_GL(EnableVertexAttribArray),
+    EMAP_GL(Finish),
+    EMAP_GL(FramebufferRenderbuffer),
+    EMAP_GL(FramebufferTexture2D),
+    EMAP_GL(GenBuffers),
+    EMAP_GL(GenFramebuffers),
+    EMAP_GL(GenRenderbuffers),
+    EMAP_GL(GenTextures),
+    EMAP_GL(GenVertexArrays),
+    EMAP_GL(GenerateMipmap),
+    EMAP_GL(GetError),
+    EMAP_GL(GetIntegerv),
+    EMAP_GL(GetProgramInfoLog),
+    EMAP_GL(GetFloatv),
+    EMAP_GL(GetProgramiv),
+    EMAP_GL(GetShaderInfoLog),
+    EMAP_GL(GetShaderiv),
+    EMAP_GL(GetString),
+    EMAP_GL(GetUniformLocation),
+    EMAP_GL(LinkProgram),
+    EMAP_GL(PixelStorei),
+    EMAP_GL(ReadPixels),
+    EMAP_GL(Scissor),
+    EMAP_GL(RenderbufferStorage),
+    EMAP_GL(ShaderSource),
+    EMAP_GL(TexBuffer),
+    EMAP_GL(TexImage2D),
+    EMAP_GL(TexParameteri),
+    EMAP_GL(Uniform1f),
+    EMAP_GL(Uniform1i),
+    EMAP_GL(Uniform2f),
+    EMAP_GL(Uniform3fv),
+    EMAP_GL(Uniform4fv),
+    EMAP_GL(UniformMatrix3fv),
+    EMAP_GL(UniformMatrix4fv),
+    EMAP_GL(UseProgram),
+    EMAP_GL(VertexAttribIPointer),
+    EMAP_GL(VertexAttribPointer),
+    EMAP_GL(Viewport),
+};
+#undef EMAP_GL
 
 }  // namespace
 
-#define EMAP_GL_FUNCTIONS(X)                                                                                           \
-  X(glActiveTexture)                                                                                                   \
-  X(glAttachShader)                                                                                                    \
-  X(glBindAttribLocation)                                                                                              \
-  X(glBindBuffer)                                                                                                      \
-  X(glBindFramebuffer)                                                                                                 \
-  X(glBindRenderbuffer)                                                                                                \
-  X(glBindTexture)                                                                                                     \
-  X(glBindVertexArray)                                                                                                 \
-  X(glBlendFunc)                                                                                                       \
-  X(glBufferData)                                                                                                      \
-  X(glCheckFramebufferStatus) X(glClear) X(glClearColor) X(glClearDepth) X(glColorMask) X(glCompileShader)             \
-      X(glCreateProgram) X(glCreateShader) X(glDeleteBuffers) X(glDeleteFramebuffers) X(glDeleteProgram)               \
-          X(glDeleteRenderbuffers) X(glDeleteShader) X(glDeleteTextures) X(glDeleteVertexArrays) X(glDepthFunc)        \
-              X(glDepthMask) X(glDisable) X(glDrawArrays) X(glDrawElements) X(glDrawElementsBaseVertex) X(glEnable)    \
-                  X(glEnableVertexAttribArray) X(glFinish) X(glFramebufferRenderbuffer) X(glFramebufferTexture2D)      \
-                      X(glGenBuffers) X(glGenFramebuffers) X(glGenRenderbuffers) X(glGenTextures) X(glGenVertexArrays) \
-                          X(glGenerateMipmap) X(glGetError) X(glGetIntegerv) X(glGetProgramInfoLog) X(glGetFloatv)     \
-                              X(glGetProgramiv) X(glGetShaderInfoLog) X(glGetShaderiv) X(glGetString)                  \
-                                  X(glGetUniformLocation) X(glLinkProgram) X(glPixelStorei) X(glReadPixels)            \
-                                      X(glScissor) X(glRenderbufferStorage) X(glShaderSource) X(glTexBuffer)           \
-                                          X(glTexImage2D) X(glTexParameteri) X(glUniform1f) X(glUniform1i)             \
-                                              X(glUniform2f) X(glUniform3fv) X(glUniform4fv) X(glUniformMatrix3fv)     \
-                                                  X(glUniformMatrix4fv) X(glUseProgram) X(glVertexAttribIPointer)      \
-                                                      X(glVertexAttribPointer) X(glViewport)
-
 std::string use_gl_functions(GlFunction (*find)(const char*)) {
-#define EMAP_USE(name) \
-  if (!set(epoxy_##name, find(#name))) return #name;
-  EMAP_GL_FUNCTIONS(EMAP_USE)
-#undef EMAP_USE
+  for (const Function& function : kFunctions) {
+    const GlFunction found = find(function.name);
+    if (!found) return function.name;
+    function.set(found);
+  }
   return {};
 }
 

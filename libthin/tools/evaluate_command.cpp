@@ -12,6 +12,7 @@
 #include "libthin/tools/commands.h"
 #include "libthin/tools/evaluation_report.h"
 #include "libthin/tools/option_text.h"
+#include "libthin/tools/outcome.h"
 #include "libthin/tools/preparation_data.h"
 #include "libthin/tools/withholding_report.h"
 
@@ -169,14 +170,7 @@ void add_evaluate_command(CLI::App& program, Action& action) {
                    "cross-validate: withhold this share, predict it from what is retained of the rest")
       ->check(CLI::Range(0.01, 0.9));
   command->add_option("files", arguments->files, "files of soundings; none with [synthetic] source");
-  command->callback([arguments, &action] {
-    action = [arguments] {
-      const Result<int> code = run(*arguments);
-      if (code) return *code;
-      spdlog::error("{}", code.error().message);
-      return exit_code(code.error().kind);
-    };
-  });
+  command->callback([arguments, &action] { action = [arguments] { return finished(run(*arguments)); }; });
 }
 
 }  // namespace thin

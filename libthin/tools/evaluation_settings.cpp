@@ -2,30 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
-#include "libthin/tools/preparation_data.h"
+#include "libthin/tools/settings.h"
 
 namespace thin {
 namespace {
 
 constexpr const char* kSection = "evaluate";
 
-void keep_resolved(const std::string& section, const OptionTable& table, EvaluationSettings& settings) {
-  for (const Option& option : table.options())
-    settings.resolved.emplace_back(section + "." + option.name, option.current_value());
-}
-
 }  // namespace
 
 Result<EvaluationSettings> read_evaluation_settings(const std::string& path) {
-  Result<Configuration> configuration = Configuration::read(path);
-  if (!configuration) return configuration.error();
-  Result<EvaluationSettings> settings = read_evaluation_settings(std::move(*configuration));
-  std::error_code ignored;
-  const std::filesystem::path absolute = std::filesystem::absolute(path, ignored);
-  if (settings) make_paths_absolute(settings->preparation, absolute.parent_path().string());
-  return settings;
+  return read_settings_file(path, [](Configuration file) { return read_evaluation_settings(std::move(file)); });
 }
 
 Result<EvaluationSettings> read_evaluation_settings(Configuration configuration) {
@@ -47,13 +34,12 @@ Result<EvaluationSettings> read_evaluation_settings(Configuration configuration)
     configuration.add_problem("preparation", conflict->key, conflict->problem);
   declare_run_options(run, settings.threads);
   configuration.read_section("run", run);
-  for (const char* section : {"thinning", "output", "daemon", "window", "twin", "cycle"})
-    configuration.ignore_section(section);
+  ignore_other_sections(configuration);
   if (Result<void> good = configuration.finish(); !good) return good.error();
-  keep_resolved("evaluate", evaluation.without({"repetitions"}), settings);
-  keep_resolved("synthetic", synthetic, settings);
-  keep_resolved("input", input, settings);
-  keep_resolved("preparation", preparation, settings);
+  keep_resolved("evaluate", evaluation.without({"repetitions"}), settings.resolved);
+  keep_resolved("synthetic", synthetic, settings.resolved);
+  keep_resolved("input", input, settings.resolved);
+  keep_resolved("preparation", preparation, settings.resolved);
   return settings;
 }
 

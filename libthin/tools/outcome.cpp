@@ -38,6 +38,12 @@ int fail(const Error& error) {
   return exit_code(error.kind);
 }
 
+int finished(const Result<int>& code) {
+  if (code) return *code;
+  spdlog::error("{}", code.error().message);
+  return exit_code(code.error().kind);
+}
+
 Error without_path(Error error, const std::string& path) {
   const std::string prefix = path + ": ";
   if (error.message.starts_with(prefix)) error.message.erase(0, prefix.size());

@@ -19,6 +19,9 @@ void print_outcome(const OutcomeJson& outcome);
 // people, the reason on standard error. Returns the exit code.
 int fail(const Error& error);
 
+// The exit code of a command that people call; what is wrong goes to the log.
+int finished(const Result<int>& code);
+
 // The error of a file without the path in front, for those who know the file by another name: the daemon's spool, and
 // reports, which must not depend on where the files lay.
 Error without_path(Error error, const std::string& path);

@@ -138,14 +138,7 @@ void add_run_command(CLI::App& program, Action& action) {
                  "print the resolved way, step by step, with what each step left out; the outputs are the same")
       ->excludes("--json");
   command->add_option("files", arguments->files, "files of soundings")->required();
-  command->callback([arguments, &action] {
-    action = [arguments] {
-      const Result<int> code = run(*arguments);
-      if (code) return *code;
-      spdlog::error("{}", code.error().message);
-      return exit_code(code.error().kind);
-    };
-  });
+  command->callback([arguments, &action] { action = [arguments] { return finished(run(*arguments)); }; });
 }
 
 }  // namespace thin

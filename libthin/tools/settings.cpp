@@ -3,22 +3,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <filesystem>
-
-#include "libthin/tools/preparation_data.h"
-
 namespace thin {
-namespace {
-
-// Sections of the daemon and of `thin evaluate`, which read and check them themselves.
-constexpr const char* kOtherSections[] = {"daemon", "window", "evaluate", "synthetic"};
-
-void keep_resolved(const std::string& section, const OptionTable& table, Settings& settings) {
-  for (const Option& option : table.options())
-    settings.resolved.emplace_back(section + "." + option.name, option.current_value());
+void ignore_other_sections(Configuration& configuration) {
+  for (const char* section : {"daemon", "window", "input", "preparation", "thinning", "output", "run", "evaluate",
+                              "synthetic", "twin", "cycle"})
+    configuration.ignore_section(section);
 }
 
-}  // namespace
+void keep_resolved(const std::string& section, const OptionTable& table, ResolvedOptions& resolved) {
+  for (const Option& option : table.options())
+    resolved.emplace_back(section + "." + option.name, option.current_value());
+}
 
 std::unique_ptr<Thinner> thinner_named(Configuration& configuration, const std::string& section, const std::string& key,
                                        const std::string& name) {
@@ -44,13 +39,7 @@ void declare_run_options(OptionTable& table, int& threads) {
 }
 
 Result<Settings> read_settings(const std::string& path) {
-  Result<Configuration> configuration = Configuration::read(path);
-  if (!configuration) return configuration.error();
-  Result<Settings> settings = read_settings(std::move(*configuration));
-  std::error_code ignored;
-  const std::filesystem::path absolute = std::filesystem::absolute(path, ignored);
-  if (settings) make_paths_absolute(settings->preparation, absolute.parent_path().string());
-  return settings;
+  return read_settings_file(path, [](Configuration file) { return read_settings(std::move(file)); });
 }
 
 Result<Settings> read_settings(Configuration configuration) {
@@ -63,8 +52,6 @@ Result<Settings> read_settings(Configuration configuration) {
     configuration.read_section("thinning", thinning);
     if (const auto conflict = settings.thinner->conflict())
       configuration.add_problem("thinning", conflict->key, conflict->problem);
-  } else {
-    configuration.ignore_section("thinning");
   }
   settings.input.declare(input);
   configuration.read_section("input", input);
@@ -82,12 +69,12 @@ Result<Settings> read_settings(Configuration configuration) {
                     settings.method_name));
   declare_run_options(run, settings.threads);
   configuration.read_section("run", run);
-  for (const char* section : kOtherSections) configuration.ignore_section(section);
+  ignore_other_sections(configuration);
   if (Result<void> good = configuration.finish(); !good) return good.error();
-  keep_resolved("thinning", thinning, settings);
-  keep_resolved("input", input, settings);
-  keep_resolved("preparation", preparation, settings);
-  keep_resolved("output", output, settings);
+  keep_resolved("thinning", thinning, settings.resolved);
+  keep_resolved("input", input, settings.resolved);
+  keep_resolved("preparation", preparation, settings.resolved);
+  keep_resolved("output", output, settings.resolved);
   return settings;
 }
 

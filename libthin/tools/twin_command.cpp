@@ -9,6 +9,7 @@
 #include "libthin/foundation/parallel.h"
 #include "libthin/tools/commands.h"
 #include "libthin/tools/option_text.h"
+#include "libthin/tools/outcome.h"
 #include "libthin/tools/twin_report.h"
 
 namespace thin {
@@ -73,14 +74,7 @@ void add_twin_command(CLI::App& program, Action& action) {
   command->add_option("-c,--config", arguments->configuration, "configuration file (TOML) with [twin]");
   command->add_flag("--keys", arguments->show_keys, "show the keys of the configuration, and do nothing else");
   command->add_option("--json", arguments->json, "write the results here; the same bytes each time");
-  command->callback([arguments, &action] {
-    action = [arguments] {
-      const Result<int> code = run(*arguments);
-      if (code) return *code;
-      spdlog::error("{}", code.error().message);
-      return exit_code(code.error().kind);
-    };
-  });
+  command->callback([arguments, &action] { action = [arguments] { return finished(run(*arguments)); }; });
 }
 
 }  // namespace thin

@@ -21,16 +21,12 @@ Result<TwinSettings> read_twin_settings(Configuration configuration) {
   configuration.read_section("cycle", cycle);
   declare_run_options(run, settings.threads);
   configuration.read_section("run", run);
-  for (const char* section :
-       {"thinning", "output", "daemon", "window", "evaluate", "synthetic", "input", "preparation"})
-    configuration.ignore_section(section);
+  ignore_other_sections(configuration);
   if (settings.twin.error_factors.empty() || settings.twin.counts.empty())
     configuration.add_problem("twin", "error_factors", "and counts must not be empty");
   if (Result<void> good = configuration.finish(); !good) return good.error();
-  for (const Option& option : twin.options())
-    settings.resolved.emplace_back("twin." + option.name, option.current_value());
-  for (const Option& option : cycle.options())
-    settings.resolved.emplace_back("cycle." + option.name, option.current_value());
+  keep_resolved("twin", twin, settings.resolved);
+  keep_resolved("cycle", cycle, settings.resolved);
   return settings;
 }
 

@@ -43,7 +43,7 @@ CURVE_PSNR = {
     "rockerarm": [65, 70, 75, 80, 85],
 }
 # No floor: 95 dB by surfdist. The encoder's own samples are others, hence the margin; resolutions are named to save trials.
-HIGH_PSNR = {"igea": (95.5, 2400), "bunny": (95.7, 2400), "dragon": (95.4, 2900)}
+HIGH_PSNR = {"igea": (95.5, 2400), "bunny": (95.7, 2400), "dragon": (95.4, 3400)}
 # Bits per vertex, and the thesis's E_rms for Venus: even split, image-based, full distance (table 4.1).
 DISTRIBUTION_BITS = {0.33: (10.9, 9.59, 7.95), 0.53: (5.39, 4.92, 4.60), 0.72: (3.37, 3.26, 3.22), 1.02: (2.31, 2.32, 2.30),
                      2.01: (1.15, 1.13, 1.10)}

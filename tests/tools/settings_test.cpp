@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "libthin/tools/evaluation_settings.h"
+#include "libthin/tools/twin_settings.h"
+
 namespace thin {
 namespace {
 
@@ -68,6 +71,16 @@ TEST(Settings, FlagsDoNotGoWithAMethodThatMakesObservations) {
 
 TEST(Settings, LeaveTheDaemonsSectionsToIt) {
   EXPECT_EQ(problem_of("[thinning]\nmethod = \"box\"\n[daemon]\nanything = 1\n[window]\nelse = 2\n"), "");
+}
+
+// One file may tell all of the programs what they need.
+TEST(Settings, LeaveTheSectionsOfOtherCommandsToThem) {
+  const std::string text =
+      "[thinning]\nretain_count = 9\n[daemon]\n[window]\n[input]\n[preparation]\n[output]\n[run]\n[evaluate]\n"
+      "methods = [\"box\"]\n[synthetic]\nsource = \"spiral\"\n[twin]\n[cycle]\n";
+  EXPECT_EQ(problem_of(text), "");
+  EXPECT_TRUE(read_evaluation_settings(*Configuration::parse(text, "c.toml")));
+  EXPECT_TRUE(read_twin_settings(*Configuration::parse(text, "c.toml")));
 }
 
 TEST(Settings, NothingResolvedDependsOnTheThreads) {
