@@ -83,7 +83,8 @@ Result<Camera> parse_camera(const std::string& text) {
   }
   const bool finite = std::isfinite(camera.azimuth_degrees) && std::isfinite(camera.elevation_degrees) &&
                       std::isfinite(camera.distance) && camera.target.allFinite();
-  if (!finite || !(camera.distance > 0) || camera.distance > 1e4)
+  if (!finite) return no_camera(text);
+  if (!(camera.distance > 0) || camera.distance > 1e4)
     return Error{ErrorKind::configuration,
                  fmt::format("a camera at a distance of {} diagonals shows nothing: choose more than 0 and at most 1e4",
                              camera.distance)};

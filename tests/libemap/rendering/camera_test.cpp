@@ -40,6 +40,7 @@ TEST(CameraTest, RefusesWhatIsNone) {
     ASSERT_FALSE(camera) << text;
     EXPECT_EQ(camera.error().kind, thin::ErrorKind::configuration);
   }
+  EXPECT_NE(parse_camera("nan,2,2").error().message.find("is no camera"), std::string::npos);
 }
 
 TEST(CameraTest, RaysAndDepthsAreThoseOfTheClipMatrix) {
