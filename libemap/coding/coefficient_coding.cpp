@@ -11,8 +11,6 @@ namespace {
 
 constexpr std::uint32_t kLevels = 8;
 constexpr std::int32_t kLargestValue = 1 << (kValueBits + 2);  // beyond what any writer writes
-constexpr double kBitPrice = 0.06;                             // squared steps
-constexpr double kSignBits = 1.5;                              // of the sign, and of saying that a magnitude is one
 constexpr std::uint32_t kUnary = 14;  // magnitudes up to this one are counted out, larger ones escape
 constexpr std::array<std::uint32_t, 7> kZeroContexts = {12 * 4 * kLevels, 6 * 8 * 4,    6 * 8 * 4,          144 * 4,
                                                         6 * 6 * 4 * 4,    16 * kLevels, 4 * 3 * 4 * kLevels};
@@ -73,8 +71,8 @@ CoefficientCoding::CoefficientCoding()
 template <class Coder>
 class CoefficientCoding::Run {
  public:
-  Run(CoefficientCoding& models, Coder& coder, QuantisedMap& map, const std::vector<double>* wanted)
-      : models_(models), coder_(coder), map_(map), wanted_(wanted), magnitudes_(map.values.size()) {}
+  Run(CoefficientCoding& models, Coder& coder, QuantisedMap& map)
+      : models_(models), coder_(coder), map_(map), magnitudes_(map.values.size()) {}
 
   void code() {
     std::array<bool, 4> parent_was_empty{};
@@ -183,10 +181,6 @@ class CoefficientCoding::Run {
         ((parent6 * 6 + sisters6) * 4 + std::min(near, 3U)) * 4 + kind,
         sixteen_classes(all) * kLevels + level,
         ((n.surrounded * 3 + std::min(near, 2U)) * 4 + kind) * kLevels + level};
-    if (wanted_ && band.kind != 0) {
-      const double zero = models_.zero_.predict(zero_contexts, near12) / static_cast<double>(kProbabilityOne);
-      given = worthwhile((*wanted_)[index(r, c)], std::log2(zero / (1 - zero)));
-    }
     if (models_.zero_.code(coder_, given == 0, zero_contexts, near12)) return 0;
 
     const bool negative = code_sign(given < 0, band, r, c);
@@ -204,18 +198,6 @@ class CoefficientCoding::Run {
     }
     if (magnitude == kUnary) magnitude += code_escape(wanted - kUnary);
     return negative ? -static_cast<std::int32_t>(magnitude) : static_cast<std::int32_t>(magnitude);
-  }
-
-  // The value with the least squared error + kBitPrice * bits. zero_advantage: bits that a zero costs less than
-  // another.
-  static std::int32_t worthwhile(double wanted, double zero_advantage) {
-    const double magnitude = std::abs(wanted);
-    auto value = static_cast<std::int32_t>(magnitude + 0.5 - kBitPrice / 2);
-    if (value == 0) return 0;
-    const double error = magnitude - value;
-    const double bits = zero_advantage + kSignBits + (value > 1 ? value : 0);
-    if (magnitude * magnitude <= error * error + kBitPrice * bits) value = 0;
-    return wanted < 0 ? -value : value;
   }
 
   bool code_sign(bool given, const Band& band, std::uint32_t r, std::uint32_t c) {
@@ -246,17 +228,16 @@ class CoefficientCoding::Run {
   CoefficientCoding& models_;
   Coder& coder_;
   QuantisedMap& map_;
-  const std::vector<double>* wanted_;
   std::vector<std::uint32_t> magnitudes_;  // of what was coded
 };
 
 template <class Coder>
-void CoefficientCoding::code(Coder& coder, QuantisedMap& map, const std::vector<double>* wanted) {
-  Run<Coder>(*this, coder, map, wanted).code();
+void CoefficientCoding::code(Coder& coder, QuantisedMap& map) {
+  Run<Coder>(*this, coder, map).code();
 }
 
-template void CoefficientCoding::code(RangeEncoder&, QuantisedMap&, const std::vector<double>*);
-template void CoefficientCoding::code(RangeDecoder&, QuantisedMap&, const std::vector<double>*);
-template void CoefficientCoding::code(BitCounter&, QuantisedMap&, const std::vector<double>*);
+template void CoefficientCoding::code(RangeEncoder&, QuantisedMap&);
+template void CoefficientCoding::code(RangeDecoder&, QuantisedMap&);
+template void CoefficientCoding::code(BitCounter&, QuantisedMap&);
 
 }  // namespace emap

@@ -52,24 +52,6 @@ TEST(CoefficientCoding, ReadsBackWhatWasWritten) {
   EXPECT_FALSE(decoder.exhausted());
 }
 
-TEST(CoefficientCoding, ChoosingValuesSavesBitsAndStaysNearTheWanted) {
-  QuantisedMap rounded = map_of(120, 100, 3);
-  test::Random32 random(3);
-  std::vector<double> wanted(rounded.values.size());
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    wanted[i] = rounded.support[i] ? (random() % 2000 - 1000.0) / 1000 * (random() % 5 == 0 ? 4 : 0.7) : 0;
-    rounded.values[i] = static_cast<std::int32_t>(std::lround(wanted[i]));
-  }
-  QuantisedMap chosen = rounded;
-  CoefficientCoding coding_rounded, coding_chosen;
-  BitCounter bits_rounded, bits_chosen;
-  coding_rounded.code(bits_rounded, rounded);
-  coding_chosen.code(bits_chosen, chosen, &wanted);
-  EXPECT_LT(bits_chosen.bits(), 0.97 * bits_rounded.bits());
-  for (std::size_t i = 0; i < wanted.size(); ++i)
-    EXPECT_LE(std::abs(chosen.values[i]), std::abs(rounded.values[i])) << i;
-}
-
 TEST(SparseFit, KnownSamplesAreKeptAndSmoothOnesNeedFewCoefficients) {
   constexpr std::uint32_t kColumns = 90, kRows = 70;
   const auto mask = test::random_mask(kColumns, kRows, 5);
