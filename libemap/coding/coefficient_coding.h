@@ -1,9 +1,11 @@
 #pragma once
 
-// Quantised wavelet coefficients, band by band from coarse to fine: is it zero, its sign, how large is it. Each
-// decision is mixed from several contexts: neighbours, the coarser coefficient in the same place, the bands of the same
-// level coded before (after EBCOT and ECECOW: D. Taubman, 2000; X. Wu, 1997).
+// Quantised wavelet coefficients, band by band from coarse to fine: is it zero, its sign, how many bits has its
+// magnitude, and which. Each decision is mixed from several contexts: the magnitude that is expected from neighbours,
+// the coarser coefficient in the same place and the bands of the same level coded before (after ECECOW: X. Wu, 1997),
+// patterns of these, and how much of the mask the coefficient sees.
 
+#include <array>
 #include <cstdint>
 
 #include "libemap/coding/context_mixer.h"
@@ -24,8 +26,15 @@ class CoefficientCoding {
   template <class Coder>
   class Run;
 
-  SimpleBits band_is_empty_, escape_;
-  ContextMixer zero_, sign_, larger_;
+  // Mean magnitude so far in bands of one kind and level, in 1/256.
+  struct RunningMean {
+    std::int64_t value = 0;
+    std::int64_t count = 0;
+  };
+
+  SimpleBits band_is_empty_, second_bit_;
+  ContextMixer zero_, sign_, longer_, first_bit_;
+  std::array<std::array<RunningMean, 8>, 4> means_{};  // by kind, level
 };
 
 }  // namespace emap

@@ -15,13 +15,6 @@
 namespace emap {
 namespace {
 
-QuantisedMap empty_map(const ElevationPatch& patch) {
-  const std::uint32_t levels = rectangular_levels(patch.columns, patch.rows);
-  return {patch.columns, patch.rows, wavelet_bands(patch.columns, patch.rows, levels),
-          coefficient_support(patch.columns, patch.rows, levels, patch.mask),
-          std::vector<std::int32_t>(patch.mask.size())};
-}
-
 constexpr double kRounding = 0.35;  // of magnitudes, before they are chosen one by one
 constexpr int kSweeps = 3;
 
@@ -29,7 +22,7 @@ class ContextsWriter : public ElevationWriter {
  public:
   explicit ContextsWriter(const ElevationMaps& maps) : maps_(maps) {
     for (const ElevationPatch& patch : maps.patches) {
-      quantised_.push_back(empty_map(patch));
+      quantised_.push_back(quantised_map(patch.columns, patch.rows, patch.mask));
       choices_.emplace_back(patch, quantised_.back());
     }
     fitted_.resize(quantised_.size());
@@ -95,7 +88,7 @@ thin::Result<void> read(RangeDecoder& decoder, double step, ElevationMaps& maps)
   CoefficientCoding coding;
   std::vector<QuantisedMap> quantised;
   for (const ElevationPatch& patch : maps.patches) {
-    quantised.push_back(empty_map(patch));
+    quantised.push_back(quantised_map(patch.columns, patch.rows, patch.mask));
     coding.code(decoder, quantised.back());
     if (decoder.exhausted())
       return thin::Error{thin::ErrorKind::incomplete,

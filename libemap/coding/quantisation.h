@@ -17,11 +17,15 @@ constexpr std::uint32_t kValueBits = 26;
 struct QuantisedMap {
   std::uint32_t columns = 0, rows = 0;
   std::vector<Band> bands;
-  std::vector<std::uint8_t> support;  // 1 for the coefficients that are coded
-  std::vector<std::int32_t> values;   // 0 outside the support
+  std::vector<std::uint8_t> support;     // 1 for the coefficients that are coded
+  std::vector<std::uint8_t> visibility;  // coefficient_visibility()
+  std::vector<std::int32_t> values;      // 0 outside the support
 
   std::size_t index(std::uint32_t row, std::uint32_t column) const { return std::size_t{row} * columns + column; }
 };
+
+// Of a map with this mask, all values 0.
+QuantisedMap quantised_map(std::uint32_t columns, std::uint32_t rows, const std::vector<std::uint8_t>& mask);
 
 // An error of half a step in every coefficient is one of half a step in every coarse sample, root mean square: four
 // fine samples stand for a coarse one.

@@ -14,10 +14,7 @@ namespace emap {
 namespace {
 
 QuantisedMap map_of(std::uint32_t columns, std::uint32_t rows, unsigned seed) {
-  const std::uint32_t levels = rectangular_levels(columns, rows);
-  return {columns, rows, wavelet_bands(columns, rows, levels),
-          coefficient_support(columns, rows, levels, test::random_mask(columns, rows, seed)),
-          std::vector<std::int32_t>(std::size_t{columns} * rows)};
+  return quantised_map(columns, rows, test::random_mask(columns, rows, seed));
 }
 
 QuantisedMap random_map(std::uint32_t columns, std::uint32_t rows, unsigned seed) {

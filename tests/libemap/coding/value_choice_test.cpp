@@ -14,13 +14,6 @@ namespace {
 
 constexpr double kStep = 0.01;
 
-QuantisedMap empty_map(const ElevationPatch& patch) {
-  const std::uint32_t levels = rectangular_levels(patch.columns, patch.rows);
-  return {patch.columns, patch.rows, wavelet_bands(patch.columns, patch.rows, levels),
-          coefficient_support(patch.columns, patch.rows, levels, patch.mask),
-          std::vector<std::int32_t>(patch.mask.size())};
-}
-
 std::vector<double> coefficients_of(const QuantisedMap& map) {
   std::vector<double> coefficients(map.values.size());
   for (const Band& band : map.bands)
@@ -52,7 +45,7 @@ TEST(ValueChoice, FindsTheValuesThatMadeTheSamples) {
     patch.columns = columns;
     patch.rows = rows;
     patch.mask.assign(std::size_t{columns} * rows, 1);
-    QuantisedMap wanted = empty_map(patch);
+    QuantisedMap wanted = quantised_map(patch.columns, patch.rows, patch.mask);
     test::Random32 random(columns);
     for (std::size_t i = 0; i < wanted.values.size(); ++i) {
       const auto magnitude = static_cast<std::int32_t>(random() % 8 == 0 ? 20 + random() % 200 : 0);
@@ -60,7 +53,7 @@ TEST(ValueChoice, FindsTheValuesThatMadeTheSamples) {
     }
     patch.elevation = samples_of(wanted);
     const ValueChoice choice(patch, wanted);
-    QuantisedMap found = empty_map(patch);
+    QuantisedMap found = quantised_map(patch.columns, patch.rows, patch.mask);
     sweep(choice, found, 40);
     EXPECT_EQ(found.values, wanted.values) << columns << " x " << rows;
   }
@@ -77,7 +70,7 @@ TEST(ValueChoice, IsWorthMoreThanRounding) {
     for (std::uint32_t c = 0; c < patch.columns; ++c)
       patch.elevation[r * patch.columns + c] =
           std::sin(0.05 * c) * std::cos(0.07 * r) + 0.05 * std::sin(0.4 * c) + (random() % 1000) * 2e-5;
-  QuantisedMap rounded = empty_map(patch);
+  QuantisedMap rounded = quantised_map(patch.columns, patch.rows, patch.mask);
   std::vector<double> wanted = patch.elevation;
   rectangular_analysis(patch.columns, patch.rows, rectangular_levels(patch.columns, patch.rows), wanted);
   for (const Band& band : rounded.bands)
