@@ -3,22 +3,37 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cmath>
 #include <cstdlib>
+
+#include "libemap/coding/coefficient_support.h"
 
 namespace emap {
 namespace {
 
 constexpr std::uint32_t kLevels = 8;
 constexpr std::int32_t kLargestValue = 1 << (kValueBits + 2);  // beyond what any writer writes
-constexpr double kBitPrice = 0.06;                             // squared steps
-constexpr double kSignBits = 1.5;                              // of the sign, and of saying that a magnitude is one
-constexpr std::uint32_t kUnary = 14;  // magnitudes up to this one are counted out, larger ones escape
-constexpr std::array<std::uint32_t, 7> kZeroContexts = {12 * 4 * kLevels, 6 * 8 * 4,    6 * 8 * 4,          144 * 4,
-                                                        6 * 6 * 4 * 4,    16 * kLevels, 4 * 3 * 4 * kLevels};
-constexpr std::array<std::uint32_t, 4> kLargerContexts = {kUnary * 12, kUnary * 6 * 6, kUnary * 4 * kLevels,
-                                                          kUnary * 36};
+constexpr std::uint32_t kLongest = kValueBits + 1;  // bits of a magnitude: differences have one more than values
+constexpr std::uint32_t kExpected = 64;             // classes of the magnitude that is expected
+constexpr std::uint32_t kVisible = kVisibilityClasses;
+constexpr std::array<std::uint32_t, 5> kZeroContexts = {6 * 8 * 4, 144 * 4, 16 * kLevels, kVisible * 3 * 4 * kLevels,
+                                                        kExpected* kVisible};
+constexpr std::array<std::uint32_t, 5> kLongerContexts = {7 * kExpected * kVisible, kExpected * 4,
+                                                          kLongest * 4 * kLevels, kLongest * 7 * 7, kLongest * 64};
+constexpr std::array<std::uint32_t, 3> kFirstBitContexts = {(kLongest + 1) * kExpected, (kLongest + 1) * 4 * kLevels,
+                                                            (kLongest + 1) * kVisible};
 constexpr std::array<std::uint32_t, 3> kSignContexts = {9 * 4, 27 * 4, 81};
+
+// The expected magnitude, in 1/256: weights of running mean (1/256), W, N, NW, NE, WW, NN, parent, sisters, by kind.
+// Fitted to several models; the least mean of log E + |v| / E.
+struct ExpectationWeights {
+  std::uint32_t mean, west, north, north_west, north_east, west2, north2, parent, sisters;
+};
+constexpr std::array<ExpectationWeights, 4> kExpectation = {{{256, 0, 0, 0, 0, 0, 0, 0, 0},
+                                                             {6, 73, 97, 24, 31, 2, 13, 1, 0},
+                                                             {4, 99, 44, 21, 28, 20, 0, 1, 7},
+                                                             {1, 57, 50, 23, 29, 0, 0, 1, 3}}};
+constexpr std::int64_t kFirstMean = 64 * 256;
+constexpr std::int64_t kMeanMemory = 100;
 
 bool cut_short(const RangeDecoder& coder) {
   return coder.exhausted();
@@ -26,12 +41,6 @@ bool cut_short(const RangeDecoder& coder) {
 template <class Coder>
 bool cut_short(const Coder&) {
   return false;
-}
-
-// 0, 1, 2, 3, 4, 5-6, 7-8, 9-12, 13-16, 17-24, 25-40, more
-std::uint32_t twelve_classes(std::uint32_t x) {
-  static constexpr std::array<std::uint32_t, 11> kLimits = {0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 40};
-  return static_cast<std::uint32_t>(std::lower_bound(kLimits.begin(), kLimits.end(), x) - kLimits.begin());
 }
 
 std::uint32_t eight_classes(std::uint32_t x) {
@@ -48,6 +57,18 @@ std::uint32_t sixteen_classes(std::uint32_t x) {
                      15U);
 }
 
+// Two to an octave.
+std::uint32_t expected_class(std::uint64_t expected) {
+  const auto x = static_cast<std::uint32_t>(std::min<std::uint64_t>(expected, (1U << 30) - 1));
+  if (x < 2) return x;
+  const auto length = static_cast<std::uint32_t>(std::bit_width(x));
+  return 2 * (length - 1) + (x >> (length - 2) & 1);
+}
+
+std::uint32_t length_class(std::uint32_t magnitude, std::uint32_t most) {
+  return std::min(static_cast<std::uint32_t>(std::bit_width(magnitude)), most);
+}
+
 // 0 for 0, 1 for positive, 2 for negative
 std::uint32_t sign_class(std::int32_t value) {
   return value == 0 ? 0 : value > 0 ? 1 : 2;
@@ -56,25 +77,25 @@ std::uint32_t sign_class(std::int32_t value) {
 // What is known around a coefficient. Magnitudes; 0 outside the band.
 struct Neighbourhood {
   std::uint32_t west = 0, west2 = 0, north = 0, north2 = 0, north_west = 0, north_east = 0;
-  std::uint32_t parent = 0;      // twice the coarser coefficient of the same kind in this place, and those beside it
-  std::uint32_t sisters = 0;     // twice those of the level's bands coded before in this place, and those beside them
-  std::uint32_t surrounded = 0;  // how many of the four neighbours are coded, 0 to 3 or more
+  std::uint32_t parent = 0;   // twice the coarser coefficient of the same kind in this place, and those beside it
+  std::uint32_t sisters = 0;  // twice those of the level's bands coded before in this place, and those beside them
 };
 
 }  // namespace
 
 CoefficientCoding::CoefficientCoding()
     : band_is_empty_(4 * kLevels * 2),
-      escape_(2 * 32),
-      zero_(kZeroContexts, 12),
+      second_bit_((kLongest + 1) * 2),
+      zero_(kZeroContexts, kVisible * 3),
       sign_(kSignContexts, 4),
-      larger_(kLargerContexts, kUnary) {}
+      longer_(kLongerContexts, kLongest * kVisible),
+      first_bit_(kFirstBitContexts, kLongest + 1) {}
 
 template <class Coder>
 class CoefficientCoding::Run {
  public:
-  Run(CoefficientCoding& models, Coder& coder, QuantisedMap& map, const std::vector<double>* wanted)
-      : models_(models), coder_(coder), map_(map), wanted_(wanted), magnitudes_(map.values.size()) {}
+  Run(CoefficientCoding& models, Coder& coder, QuantisedMap& map)
+      : models_(models), coder_(coder), map_(map), magnitudes_(map.values.size()) {}
 
   void code() {
     std::array<bool, 4> parent_was_empty{};
@@ -106,16 +127,35 @@ class CoefficientCoding::Run {
 
   void code_band(std::uint32_t b) {
     const Band& band = map_.bands[b];
+    RunningMean& mean = begun_mean(band);
     for (std::uint32_t r = band.row; r < band.row + band.rows && !cut_short(coder_); ++r)
       for (std::uint32_t c = band.column; c < band.column + band.columns; ++c) {
         if (!map_.support[index(r, c)]) continue;
         // The coarsest low-pass band is predicted from its neighbours; what is coded is the difference.
         const std::int32_t prediction = band.kind == 0 ? predicted(band, r, c) : 0;
         std::int32_t& value = map_.values[index(r, c)];
-        const std::int32_t coded = code_value(value - prediction, band, around(b, r, c), r, c);
+        const std::int32_t coded = code_value(value - prediction, band, around(b, r, c), mean, r, c);
         value = std::clamp(prediction + coded, -kLargestValue, kLargestValue);
         magnitudes_[index(r, c)] = static_cast<std::uint32_t>(std::abs(coded));
+        mean.count = std::min(mean.count + 1, kMeanMemory);
+        mean.value += (std::int64_t{256} * std::abs(coded) - mean.value) / mean.count;
       }
+  }
+
+  // Details fall by about four from level to level.
+  RunningMean& begun_mean(const Band& band) {
+    const std::uint32_t level = level_of(band);
+    auto& of_kind = models_.means_[band.kind];
+    RunningMean& mean = of_kind[level];
+    if (mean.count > 0) return mean;
+    mean.count = 1;
+    if (band.kind == 0)
+      mean.value = kFirstMean;
+    else if (level + 1 < kLevels && of_kind[level + 1].count > 0)
+      mean.value = of_kind[level + 1].value / 4;
+    else
+      mean.value = models_.means_[band.kind - 1][level].value;
+    return mean;
   }
 
   std::int32_t predicted(const Band& band, std::uint32_t r, std::uint32_t c) const {
@@ -128,7 +168,7 @@ class CoefficientCoding::Run {
     const Band& band = map_.bands[b];
     const std::size_t here = index(r, c), stride = map_.columns;
     const bool west = c > band.column, north = r > band.row;
-    const bool east = c + 1 < band.column + band.columns, south = r + 1 < band.row + band.rows;
+    const bool east = c + 1 < band.column + band.columns;
     Neighbourhood n;
     if (west) n.west = magnitudes_[here - 1];
     if (c > band.column + 1) n.west2 = magnitudes_[here - 2];
@@ -136,11 +176,6 @@ class CoefficientCoding::Run {
     if (r > band.row + 1) n.north2 = magnitudes_[here - 2 * stride];
     if (north && west) n.north_west = magnitudes_[here - stride - 1];
     if (north && east) n.north_east = magnitudes_[here - stride + 1];
-    if (west) n.surrounded += map_.support[here - 1];
-    if (north) n.surrounded += map_.support[here - stride];
-    if (east) n.surrounded += map_.support[here + 1];
-    if (south) n.surrounded += map_.support[here + stride];
-    n.surrounded = n.surrounded < 2 ? 0 : n.surrounded - 1;
     if (band.kind == 0) return n;
     if (b >= 4 && map_.bands[b - 3].kind == band.kind)
       n.parent = weight_in(map_.bands[b - 3], (r - band.row) / 2, (c - band.column) / 2);
@@ -163,59 +198,71 @@ class CoefficientCoding::Run {
     return sum;
   }
 
-  std::int32_t code_value(std::int32_t given, const Band& band, const Neighbourhood& n, std::uint32_t r,
-                          std::uint32_t c) {
+  static std::uint32_t expected_around(const Neighbourhood& n, const RunningMean& mean, std::uint32_t kind) {
+    const ExpectationWeights& weights = kExpectation[kind];
+    const auto term = [](std::uint32_t weight, std::uint64_t magnitude) { return weight * magnitude; };
+    return expected_class((term(weights.mean, static_cast<std::uint64_t>(mean.value)) >> 8) +
+                          term(weights.west, n.west) + term(weights.north, n.north) +
+                          term(weights.north_west, n.north_west) + term(weights.north_east, n.north_east) +
+                          term(weights.west2, n.west2) + term(weights.north2, n.north2) +
+                          term(weights.parent, n.parent) + term(weights.sisters, n.sisters));
+  }
+
+  std::int32_t code_value(std::int32_t given, const Band& band, const Neighbourhood& n, const RunningMean& mean,
+                          std::uint32_t r, std::uint32_t c) {
     const std::uint32_t near = 2 * (n.west + n.north) + n.north_west + n.north_east;
     const std::uint32_t all = 2 * near + n.west2 + n.north2 + 2 * n.parent + n.sisters;
-    const std::uint32_t near12 = twelve_classes(near), near8 = eight_classes(near);
-    const std::uint32_t parent6 = six_classes(n.parent), sisters6 = six_classes(n.sisters);
-    const std::uint32_t level = level_of(band), kind = band.kind;
+    const std::uint32_t kind = band.kind, level = level_of(band);
     const std::uint32_t pattern =
         (((std::min(n.west, 2U) * 3 + std::min(n.north, 2U)) * 2 + std::min(n.north_west, 1U)) * 2 +
          std::min(n.north_east, 1U)) *
             4 +
         std::min(n.west2, 1U) * 2 + std::min(n.north2, 1U);
-    const std::array<std::uint32_t, 7> zero_contexts = {
-        (near12 * 4 + kind) * kLevels + level,
-        (parent6 * 8 + near8) * 4 + kind,
-        (sisters6 * 8 + near8) * 4 + kind,
-        pattern * 4 + kind,
-        ((parent6 * 6 + sisters6) * 4 + std::min(near, 3U)) * 4 + kind,
-        sixteen_classes(all) * kLevels + level,
-        ((n.surrounded * 3 + std::min(near, 2U)) * 4 + kind) * kLevels + level};
-    if (wanted_ && band.kind != 0) {
-      const double zero = models_.zero_.predict(zero_contexts, near12) / static_cast<double>(kProbabilityOne);
-      given = worthwhile((*wanted_)[index(r, c)], std::log2(zero / (1 - zero)));
-    }
-    if (models_.zero_.code(coder_, given == 0, zero_contexts, near12)) return 0;
+    const std::uint32_t visible = map_.visibility[index(r, c)];
+    const std::uint32_t visible_near = visible * 3 + std::min(near, 2U);
+    const std::uint32_t expected = expected_around(n, mean, kind);
+    const std::array<std::uint32_t, 5> zero_contexts = {(six_classes(n.sisters) * 8 + eight_classes(near)) * 4 + kind,
+                                                        pattern * 4 + kind, sixteen_classes(all) * kLevels + level,
+                                                        (visible_near * 4 + kind) * kLevels + level,
+                                                        expected * kVisible + visible};
+    if (models_.zero_.code(coder_, given == 0, zero_contexts, visible_near)) return 0;
 
     const bool negative = code_sign(given < 0, band, r, c);
-    const auto wanted = static_cast<std::uint32_t>(std::abs(given));
-    const std::array<std::uint32_t, 4> larger_bases = {
-        near12, parent6 * 6 + sisters6, kind * kLevels + level,
-        std::min(std::max(n.west, n.north), 5U) * 6 + std::min(std::max(n.parent / 2, n.sisters / 2), 5U)};
-    std::uint32_t magnitude = 1;
-    while (magnitude < kUnary) {
-      const std::uint32_t i = magnitude - 1;
-      const std::array<std::uint32_t, 4> contexts = {i * 12 + larger_bases[0], i * 36 + larger_bases[1],
-                                                     i * 4 * kLevels + larger_bases[2], i * 36 + larger_bases[3]};
-      if (!models_.larger_.code(coder_, wanted > magnitude, contexts, i)) break;
-      ++magnitude;
-    }
-    if (magnitude == kUnary) magnitude += code_escape(wanted - kUnary);
-    return negative ? -static_cast<std::int32_t>(magnitude) : static_cast<std::int32_t>(magnitude);
+    const auto magnitude = static_cast<std::int32_t>(
+        code_magnitude(static_cast<std::uint32_t>(std::abs(given)), n, {kind * kLevels + level, visible, expected}));
+    return negative ? -magnitude : magnitude;
   }
 
-  // The value with the least squared error + kBitPrice * bits. zero_advantage: bits that a zero costs less than
-  // another.
-  static std::int32_t worthwhile(double wanted, double zero_advantage) {
-    const double magnitude = std::abs(wanted);
-    auto value = static_cast<std::int32_t>(magnitude + 0.5 - kBitPrice / 2);
-    if (value == 0) return 0;
-    const double error = magnitude - value;
-    const double bits = zero_advantage + kSignBits + (value > 1 ? value : 0);
-    if (magnitude * magnitude <= error * error + kBitPrice * bits) value = 0;
-    return wanted < 0 ? -value : value;
+  struct Place {
+    std::uint32_t kind_and_level, visible, expected;
+  };
+
+  // The number of bits one by one, then the bits below the highest. More bits than are expected are as likely at every
+  // scale.
+  std::uint32_t code_magnitude(std::uint32_t given, const Neighbourhood& n, const Place& place) {
+    const std::uint32_t beside = length_class(n.west, 6) * 7 + length_class(n.north, 6);
+    const std::uint32_t coarser = length_class(n.parent, 7) * 8 + length_class(n.sisters, 7);
+    const auto wanted = static_cast<std::uint32_t>(std::bit_width(given));
+    std::uint32_t length = 1;
+    for (; length < kLongest; ++length) {
+      const std::uint32_t relative = std::max(place.expected + 2, 2 * length) - 2 * length;
+      const std::array<std::uint32_t, 5> contexts = {
+          (std::min(length, 6U) * kExpected + relative) * kVisible + place.visible,
+          relative * 4 + place.kind_and_level / kLevels, length * 4 * kLevels + place.kind_and_level,
+          length * 49 + beside, length * 64 + coarser};
+      if (!models_.longer_.code(coder_, wanted > length, contexts, length * kVisible + place.visible)) break;
+    }
+    if (length == 1) return 1;
+    const std::array<std::uint32_t, 3> contexts = {length * kExpected + place.expected,
+                                                   length * 4 * kLevels + place.kind_and_level,
+                                                   length * kVisible + place.visible};
+    const bool first = models_.first_bit_.code(coder_, given >> (length - 2) & 1, contexts, length);
+    std::uint32_t magnitude = 2 + first;
+    if (length > 2)
+      magnitude = 2 * magnitude + models_.second_bit_.code(coder_, given >> (length - 3) & 1, length * 2 + first);
+    for (std::uint32_t bit = length - 2; bit-- > 1;)
+      magnitude = 2 * magnitude + coder_.code(given >> (bit - 1) & 1, kProbabilityOne / 2);
+    return magnitude;
   }
 
   bool code_sign(bool given, const Band& band, std::uint32_t r, std::uint32_t c) {
@@ -232,31 +279,19 @@ class CoefficientCoding::Run {
     return models_.sign_.code(coder_, given, contexts, band.kind);
   }
 
-  // Exponential Golomb: the number of bits of value + 1, one by one, then the bits below the highest.
-  std::uint32_t code_escape(std::uint32_t value) {
-    const std::uint32_t wanted = static_cast<std::uint32_t>(std::bit_width(value + 1)) - 1;
-    std::uint32_t length = 0;
-    while (length < kValueBits && models_.escape_.code(coder_, wanted > length, length)) ++length;
-    std::uint32_t number = 1;
-    for (std::uint32_t bit = length; bit-- > 0;)
-      number = number << 1 | static_cast<std::uint32_t>(coder_.code((value + 1) >> bit & 1, kProbabilityOne / 2));
-    return number - 1;
-  }
-
   CoefficientCoding& models_;
   Coder& coder_;
   QuantisedMap& map_;
-  const std::vector<double>* wanted_;
   std::vector<std::uint32_t> magnitudes_;  // of what was coded
 };
 
 template <class Coder>
-void CoefficientCoding::code(Coder& coder, QuantisedMap& map, const std::vector<double>* wanted) {
-  Run<Coder>(*this, coder, map, wanted).code();
+void CoefficientCoding::code(Coder& coder, QuantisedMap& map) {
+  Run<Coder>(*this, coder, map).code();
 }
 
-template void CoefficientCoding::code(RangeEncoder&, QuantisedMap&, const std::vector<double>*);
-template void CoefficientCoding::code(RangeDecoder&, QuantisedMap&, const std::vector<double>*);
-template void CoefficientCoding::code(BitCounter&, QuantisedMap&, const std::vector<double>*);
+template void CoefficientCoding::code(RangeEncoder&, QuantisedMap&);
+template void CoefficientCoding::code(RangeDecoder&, QuantisedMap&);
+template void CoefficientCoding::code(BitCounter&, QuantisedMap&);
 
 }  // namespace emap

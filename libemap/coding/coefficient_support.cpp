@@ -38,6 +38,34 @@ Image halve_columns(const Image& image, std::uint32_t high) {
   return half;
 }
 
+// Supported samples in each block.
+struct Counts {
+  std::uint32_t columns, rows;
+  std::vector<std::uint32_t> values;
+
+  std::uint32_t at(std::uint32_t row, std::uint32_t column) const {
+    return row < rows && column < columns ? values[std::size_t{row} * columns + column] : 0;
+  }
+};
+
+Counts halved(const Counts& fine) {
+  Counts half{(fine.columns + 1) / 2, (fine.rows + 1) / 2, {}};
+  half.values.resize(std::size_t{half.columns} * half.rows);
+  for (std::uint32_t r = 0; r < fine.rows; ++r)
+    for (std::uint32_t c = 0; c < fine.columns; ++c)
+      half.values[std::size_t{r / 2} * half.columns + c / 2] += fine.values[std::size_t{r} * fine.columns + c];
+  return half;
+}
+
+std::uint8_t class_of_share(std::uint32_t part, std::uint32_t whole) {
+  if (part == 0) return 0;
+  if (10 * part < whole) return 1;
+  if (4 * part < whole) return 2;
+  if (2 * part < whole) return 3;
+  if (4 * part < 3 * whole) return 4;
+  return part < whole ? 5 : 6;
+}
+
 }  // namespace
 
 std::uint32_t rectangular_levels(std::uint32_t columns, std::uint32_t rows) {
@@ -71,6 +99,30 @@ std::vector<std::uint8_t> coefficient_support(std::uint32_t columns, std::uint32
   std::fill(low.values.begin(), low.values.end(), std::uint8_t{1});
   place(low, 0, 0);
   return support;
+}
+
+std::vector<std::uint8_t> coefficient_visibility(std::uint32_t columns, std::uint32_t rows,
+                                                 const std::vector<Band>& bands,
+                                                 const std::vector<std::uint8_t>& mask) {
+  assert(mask.size() == std::size_t{columns} * rows);
+  std::vector<std::uint8_t> visibility(mask.size());
+  std::vector<Counts> levels = {{columns, rows, {mask.begin(), mask.end()}}};
+  for (const Band& band : bands) {
+    while (levels.size() <= band.level) levels.push_back(halved(levels.back()));
+    const Counts& counts = levels[band.level];
+    // A high-pass function lies between two blocks.
+    const std::uint32_t right = band.kind & 1, down = band.kind >> 1;
+    const std::uint32_t whole = (1 + right) * (1 + down) << 2 * band.level;
+    for (std::uint32_t r = 0; r < band.rows; ++r)
+      for (std::uint32_t c = 0; c < band.columns; ++c) {
+        std::uint32_t part = counts.at(r, c);
+        if (right) part += counts.at(r, c + 1);
+        if (down) part += counts.at(r + 1, c);
+        if (right && down) part += counts.at(r + 1, c + 1);
+        visibility[std::size_t{band.row + r} * columns + band.column + c] = class_of_share(part, whole);
+      }
+  }
+  return visibility;
 }
 
 }  // namespace emap

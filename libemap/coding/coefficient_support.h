@@ -19,4 +19,11 @@ std::uint32_t rectangular_levels(std::uint32_t columns, std::uint32_t rows);
 std::vector<std::uint8_t> coefficient_support(std::uint32_t columns, std::uint32_t rows, std::uint32_t levels,
                                               const std::vector<std::uint8_t>& mask);
 
+// How much of a mask each coefficient sees, in the same layout: classes of the share of supported samples in the blocks
+// of 2^level x 2^level samples around its middle. 0 none, 1 below a tenth, 2 a quarter, 3 a half, 4 three quarters, 5
+// less than all, 6 all. What is hardly seen is seldom coded.
+constexpr std::uint32_t kVisibilityClasses = 7;
+std::vector<std::uint8_t> coefficient_visibility(std::uint32_t columns, std::uint32_t rows,
+                                                 const std::vector<Band>& bands, const std::vector<std::uint8_t>& mask);
+
 }  // namespace emap

@@ -6,85 +6,78 @@
 
 #include "libemap/coding/coefficient_coding.h"
 #include "libemap/coding/coefficient_support.h"
+#include "libemap/coding/quantisation.h"
 #include "libemap/coding/rectangular_wavelet.h"
 #include "libemap/coding/sparse_fit.h"
+#include "libemap/coding/value_choice.h"
 #include "libthin/foundation/parallel.h"
 
 namespace emap {
 namespace {
 
-// Where a reader puts a coefficient within its interval, measured from the interval's number.
-constexpr double kReconstruction = 0.03;
-
-QuantisedMap empty_map(const ElevationPatch& patch) {
-  const std::uint32_t levels = rectangular_levels(patch.columns, patch.rows);
-  return {patch.columns, patch.rows, wavelet_bands(patch.columns, patch.rows, levels),
-          coefficient_support(patch.columns, patch.rows, levels, patch.mask),
-          std::vector<std::int32_t>(patch.mask.size())};
-}
-
-// An error of half a step in every coefficient is one of half a step in every coarse sample, root mean square: four
-// fine samples stand for a coarse one.
-double step_of(const Band& band, double step) {
-  return 2 * step / synthesis_norm(band);
-}
-
-template <class Function>
-void for_band(const Band& band, std::uint32_t columns, const Function& function) {
-  for (std::uint32_t r = band.row; r < band.row + band.rows; ++r)
-    for (std::uint32_t c = band.column; c < band.column + band.columns; ++c) function(std::size_t{r} * columns + c);
-}
+constexpr double kRounding = 0.35;  // of magnitudes, before they are chosen one by one
+constexpr int kSweeps = 3;
 
 class ContextsWriter : public ElevationWriter {
  public:
   explicit ContextsWriter(const ElevationMaps& maps) : maps_(maps) {
-    for (const ElevationPatch& patch : maps.patches) quantised_.push_back(empty_map(patch));
-    wanted_.resize(quantised_.size());
+    for (const ElevationPatch& patch : maps.patches) {
+      quantised_.push_back(quantised_map(patch.columns, patch.rows, patch.mask));
+      choices_.emplace_back(patch, quantised_.back());
+    }
     fitted_.resize(quantised_.size());
   }
 
   void write(double step, RangeEncoder& encoder) override {
-    thin::parallel_ranges(quantised_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) fit(maps_.patches[i], step, quantised_[i], wanted_[i], fitted_[i]);
-    });
+    for_maps([&](std::size_t i) { fit(maps_.patches[i], step, quantised_[i], fitted_[i]); });
+    for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      MagnitudeCosts costs;
+      for (const QuantisedMap& map : quantised_) costs.count(map);
+      costs.finish();
+      for_maps([&](std::size_t i) { choices_[i].sweep(costs, step, quantised_[i]); });
+    }
     CoefficientCoding coding;
-    for (std::size_t i = 0; i < quantised_.size(); ++i) coding.code(encoder, quantised_[i], &wanted_[i]);
+    for (QuantisedMap& map : quantised_) coding.code(encoder, map);
   }
 
  private:
-  // The coefficients in steps, and what they are when rounded.
-  static void fit(const ElevationPatch& patch, double step, QuantisedMap& map, std::vector<double>& wanted,
-                  FittedSamples& fitted) {
+  template <class Function>
+  void for_maps(const Function& function) const {
+    thin::parallel_ranges(quantised_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) function(i);
+    });
+  }
+
+  // The coefficients in steps, rounded.
+  static void fit(const ElevationPatch& patch, double step, QuantisedMap& map, FittedSamples& fitted) {
     std::vector<double> known = patch.elevation;
     for (std::size_t i = 0; i < known.size(); ++i)
       if (!patch.mask[i]) known[i] = std::numeric_limits<double>::quiet_NaN();
     std::vector<double> steps;
-    for (const Band& band : map.bands) steps.push_back(step_of(band, step));
-    wanted = fit_coefficients(map.columns, map.rows, rectangular_levels(map.columns, map.rows), known, map.support,
-                              map.bands, steps, fitted);
+    for (const Band& band : map.bands) steps.push_back(step_of_band(band, step));
+    const std::vector<double> wanted = fit_coefficients(
+        map.columns, map.rows, rectangular_levels(map.columns, map.rows), known, map.support, map.bands, steps, fitted);
     constexpr double kMost = (1U << kValueBits) - 1;
     for (std::size_t b = 0; b < map.bands.size(); ++b)
       for_band(map.bands[b], map.columns, [&](std::size_t i) {
-        wanted[i] = std::clamp(wanted[i] / steps[b], -kMost, kMost);
-        map.values[i] = static_cast<std::int32_t>(std::lround(wanted[i]));
+        const double magnitude = std::min(std::abs(wanted[i]) / steps[b], kMost);
+        const auto rounded = static_cast<std::int32_t>(magnitude + (map.bands[b].kind == 0 ? 0.5 : kRounding));
+        map.values[i] = wanted[i] < 0 ? -rounded : rounded;
       });
   }
 
   const ElevationMaps& maps_;
   std::vector<QuantisedMap> quantised_;
-  std::vector<std::vector<double>> wanted_;  // before rounding
+  std::vector<ValueChoice> choices_;
   std::vector<FittedSamples> fitted_;
 };
 
 void fill_in(ElevationPatch& patch, const QuantisedMap& map, double step) {
   patch.elevation.assign(map.values.size(), 0);
   for (const Band& band : map.bands) {
-    const double band_step = step_of(band, step);
-    const double offset = band.kind == 0 ? 0 : kReconstruction;
-    for_band(band, map.columns, [&](std::size_t i) {
-      const double value = map.values[i];
-      if (value != 0) patch.elevation[i] = band_step * std::copysign(std::abs(value) + offset, value);
-    });
+    const double band_step = step_of_band(band, step);
+    for_band(band, map.columns,
+             [&](std::size_t i) { patch.elevation[i] = band_step * reconstructed(map.values[i], band.kind); });
   }
   rectangular_synthesis(map.columns, map.rows, rectangular_levels(map.columns, map.rows), patch.elevation);
   for (std::size_t i = 0; i < patch.mask.size(); ++i)
@@ -95,7 +88,7 @@ thin::Result<void> read(RangeDecoder& decoder, double step, ElevationMaps& maps)
   CoefficientCoding coding;
   std::vector<QuantisedMap> quantised;
   for (const ElevationPatch& patch : maps.patches) {
-    quantised.push_back(empty_map(patch));
+    quantised.push_back(quantised_map(patch.columns, patch.rows, patch.mask));
     coding.code(decoder, quantised.back());
     if (decoder.exhausted())
       return thin::Error{thin::ErrorKind::incomplete,

@@ -13,12 +13,12 @@
 namespace emap {
 
 struct FitOptions {
-  int rounds = 20;
+  int rounds = 40;
   double first_threshold = 50;  // in steps, of the first round
   int further_rounds = 10;      // of a fit that begins where another one ended
-  double further_threshold = 3;
-  double last_threshold = 0.5;
-  double momentum = 0.6;  // of the unknown samples: share of their last change that is added to the next
+  double further_threshold = 2;
+  double last_threshold = 0.3;
+  double momentum = 0.8;  // of the unknown samples: share of their last change that is added to the next
 };
 
 // Where a fit ended, for the next one of the same samples with other steps; empty before the first.

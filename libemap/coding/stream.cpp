@@ -119,8 +119,8 @@ Result<HeaderAndSize> parse_header(std::span<const std::uint8_t> bytes) {
   const auto version = static_cast<std::uint8_t>(reader.number(1));
   if (bytes.size() > kMagic.size() && version != kStreamVersion)
     return Error{ErrorKind::input,
-                 fmt::format("the stream has version {}; this program reads version {}: use a newer one", version,
-                             kStreamVersion)};
+                 fmt::format("the stream has version {}; this program reads version {}: {}", version, kStreamVersion,
+                             version > kStreamVersion ? "use a newer one" : "encode the surface again")};
   header.coder = static_cast<std::uint8_t>(reader.number(1));
   header.from_points = (reader.number(1) & kFromPoints) != 0;
   reader.number(2);

@@ -12,7 +12,7 @@
 
 namespace emap {
 
-constexpr std::uint8_t kStreamVersion = 1;
+constexpr std::uint8_t kStreamVersion = 2;
 
 struct StreamHeader {
   std::uint8_t coder = 0;

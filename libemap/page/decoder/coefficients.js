@@ -1,18 +1,18 @@
 // Quantised coefficients of coder 2 (docs/emap-format.md, "Coder 2", "Values").
 
 const LARGEST_VALUE = 1 << 28;
-const UNARY = 14;          // magnitudes up to this one are counted out
-const LONGEST_ESCAPE = 26;
+const LONGEST = 27;       // bits of a magnitude
+const EXPECTED = 64;      // classes of the magnitude that is expected
+const FIRST_MEAN = 64 * 256;
+const MEAN_MEMORY = 100;
 
-const TWELVE_CLASSES = Uint8Array.from({ length: 42 }, (_, x) => {
-  const limits = [0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 40];
-  const found = limits.findIndex((limit) => x <= limit);
-  return found < 0 ? 11 : found;
-});
-
-function twelve_classes(x) {
-  return x > 40 ? 11 : TWELVE_CLASSES[x];
-}
+// The expected magnitude's weights, in 1/256, by kind: running mean, W, N, NW, NE, WW, NN, parent, sisters.
+const EXPECTATION = [
+  [256, 0, 0, 0, 0, 0, 0, 0, 0],
+  [6, 73, 97, 24, 31, 2, 13, 1, 0],
+  [4, 99, 44, 21, 28, 20, 0, 1, 7],
+  [1, 57, 50, 23, 29, 0, 0, 1, 3],
+];
 
 function eight_classes(x) {
   return x < 5 ? x : x < 8 ? 5 : x < 16 ? 6 : 7;
@@ -28,6 +28,14 @@ function sixteen_classes(x) {
   return Math.min(7 + 2 * (length - 4) + ((x >>> (length - 2)) & 1), 15);
 }
 
+// Two to an octave.
+function expected_class(expected) {
+  const x = Math.min(expected, 1073741823);
+  if (x < 2) return x;
+  const length = bit_length(x);
+  return 2 * (length - 1) + ((x >> (length - 2)) & 1);
+}
+
 // 0 for 0, 1 for positive, 2 for negative
 function sign_class(value) {
   return value === 0 ? 0 : value > 0 ? 1 : 2;
@@ -36,17 +44,25 @@ function sign_class(value) {
 class CoefficientDecoding {
   constructor() {
     this.band_is_empty = new SimpleBits(4 * 8 * 2);
-    this.escape = new SimpleBits(LONGEST_ESCAPE);
-    this.zero = new MixedBits([12 * 32, 48 * 4, 48 * 4, 144 * 4, 36 * 16, 16 * 8, 12 * 32], 12);
+    this.second_bit = new SimpleBits((LONGEST + 1) * 2);
+    this.zero = new MixedBits(
+      [48 * 4, 144 * 4, 16 * 8, VISIBILITY_CLASSES * 96, EXPECTED * VISIBILITY_CLASSES], VISIBILITY_CLASSES * 3);
     this.sign = new MixedBits([9 * 4, 27 * 4, 81], 4);
-    this.larger = new MixedBits([UNARY * 12, UNARY * 36, UNARY * 32, UNARY * 36], UNARY);
+    this.longer = new MixedBits(
+      [7 * EXPECTED * VISIBILITY_CLASSES, EXPECTED * 4, LONGEST * 32, LONGEST * 49, LONGEST * 64],
+      LONGEST * VISIBILITY_CLASSES);
+    this.first_bit = new MixedBits(
+      [(LONGEST + 1) * EXPECTED, (LONGEST + 1) * 32, (LONGEST + 1) * VISIBILITY_CLASSES], LONGEST + 1);
+    // Mean magnitude so far, in 1/256, by kind and level.
+    this.means = Array.from({ length: 32 }, () => ({ value: 0, count: 0 }));
   }
 
   // The map's values, whole numbers of steps.
-  decode(decoder, columns, rows, bands, support) {
+  decode(decoder, columns, rows, bands, support, visibility) {
     this.decoder = decoder;
     this.columns = columns;
     this.support = support;
+    this.visibility = visibility;
     this.values = new Int32Array(support.length);
     this.magnitudes = new Int32Array(support.length);  // of what was coded
     const last_was_empty = [0, 0, 0, 0];
@@ -67,18 +83,31 @@ class CoefficientDecoding {
   }
 
   decode_band(bands, b) {
-    const band = bands[b], parent = parent_band(bands, b), sisters = [];
+    const band = bands[b], parent = parent_band(bands, b), mean = this.begun_mean(band), sisters = [];
     for (let i = 1; i < band.kind && i <= b; ++i)
       if (bands[b - i].level === band.level && bands[b - i].kind !== 0) sisters.push(bands[b - i]);
     for (let r = 0; r < band.rows && !this.decoder.exhausted(); ++r)
       for (let c = 0; c < band.columns; ++c) {
         const here = (band.row + r) * this.columns + band.column + c;
         if (!this.support[here]) continue;
-        const coded = this.decode_value(band, parent, sisters, r, c, here);
+        const coded = this.decode_value(band, mean, parent, sisters, r, c, here);
         const value = band.kind === 0 ? this.predicted(r, c, here) + coded : coded;
         this.values[here] = Math.min(Math.max(value, -LARGEST_VALUE), LARGEST_VALUE);
         this.magnitudes[here] = Math.abs(coded);
+        mean.count = Math.min(mean.count + 1, MEAN_MEMORY);
+        mean.value += Math.trunc((256 * Math.abs(coded) - mean.value) / mean.count);
       }
+  }
+
+  begun_mean(band) {
+    const level = Math.min(band.level, 8) - 1, place = band.kind * 8 + level;
+    const mean = this.means[place];
+    if (mean.count > 0) return mean;
+    mean.count = 1;
+    if (band.kind === 0) mean.value = FIRST_MEAN;
+    else if (level + 1 < 8 && this.means[place + 1].count > 0) mean.value = Math.trunc(this.means[place + 1].value / 4);
+    else mean.value = this.means[place - 8].value;
+    return mean;
   }
 
   predicted(r, c, here) {
@@ -99,17 +128,7 @@ class CoefficientDecoding {
     return sum;
   }
 
-  surrounded(band, r, c, here) {
-    const { columns, support } = this;
-    let count = -1;
-    if (c > 0) count += support[here - 1];
-    if (r > 0) count += support[here - columns];
-    if (c + 1 < band.columns) count += support[here + 1];
-    if (r + 1 < band.rows) count += support[here + columns];
-    return Math.max(count, 0);
-  }
-
-  decode_value(band, parent, sisters, r, c, here) {
+  decode_value(band, mean, parent, sisters, r, c, here) {
     const { columns, magnitudes, decoder } = this;
     const kind = band.kind, level = Math.min(band.level, 8) - 1;
     const west = c > 0 ? magnitudes[here - 1] : 0, west2 = c > 1 ? magnitudes[here - 2] : 0;
@@ -122,23 +141,25 @@ class CoefficientDecoding {
 
     const near = 2 * (west + north) + north_west + north_east;
     const all = 2 * near + west2 + north2 + 2 * parent_weight + sister_weight;
-    const near12 = twelve_classes(near), near8 = eight_classes(near);
-    const parent6 = six_classes(parent_weight), sisters6 = six_classes(sister_weight);
+    const weights = EXPECTATION[kind];
+    const expected = expected_class(Math.floor((weights[0] * mean.value) / 256) + weights[1] * west +
+      weights[2] * north + weights[3] * north_west + weights[4] * north_east + weights[5] * west2 +
+      weights[6] * north2 + weights[7] * parent_weight + weights[8] * sister_weight);
+    const visible = this.visibility[here], visible_near = visible * 3 + Math.min(near, 2);
     const pattern = (((Math.min(west, 2) * 3 + Math.min(north, 2)) * 2 + Math.min(north_west, 1)) * 2 +
       Math.min(north_east, 1)) * 4 + 2 * Math.min(west2, 1) + Math.min(north2, 1);
     const zero = this.zero.contexts;
-    zero[0] = (near12 * 4 + kind) * 8 + level;
-    zero[1] = (parent6 * 8 + near8) * 4 + kind;
-    zero[2] = (sisters6 * 8 + near8) * 4 + kind;
-    zero[3] = pattern * 4 + kind;
-    zero[4] = ((parent6 * 6 + sisters6) * 4 + Math.min(near, 3)) * 4 + kind;
-    zero[5] = sixteen_classes(all) * 8 + level;
-    zero[6] = ((this.surrounded(band, r, c, here) * 3 + Math.min(near, 2)) * 4 + kind) * 8 + level;
-    if (this.zero.decode(decoder, near12)) return 0;
+    zero[0] = (six_classes(sister_weight) * 8 + eight_classes(near)) * 4 + kind;
+    zero[1] = pattern * 4 + kind;
+    zero[2] = sixteen_classes(all) * 8 + level;
+    zero[3] = (visible_near * 4 + kind) * 8 + level;
+    zero[4] = expected * VISIBILITY_CLASSES + visible;
+    if (this.zero.decode(decoder, visible_near)) return 0;
 
     const negative = this.decode_sign(kind, r, c, here);
-    const magnitude = this.decode_magnitude(near12, parent6 * 6 + sisters6, kind * 8 + level,
-      Math.min(Math.max(west, north), 5) * 6 + Math.min(Math.max(parent_weight >> 1, sister_weight >> 1), 5));
+    const beside = Math.min(bit_length(west), 6) * 7 + Math.min(bit_length(north), 6);
+    const coarser = Math.min(bit_length(parent_weight), 7) * 8 + Math.min(bit_length(sister_weight), 7);
+    const magnitude = this.decode_magnitude(kind, level, visible, expected, beside, coarser);
     return negative ? -magnitude : magnitude;
   }
 
@@ -156,19 +177,26 @@ class CoefficientDecoding {
     return this.sign.decode(this.decoder, kind);
   }
 
-  decode_magnitude(near12, coarser36, kind_and_level, largest36) {
-    const contexts = this.larger.contexts;
-    let magnitude = 1;
-    for (; magnitude < UNARY; ++magnitude) {
-      const i = magnitude - 1;
-      contexts[0] = i * 12 + near12;
-      contexts[1] = i * 36 + coarser36;
-      contexts[2] = i * 32 + kind_and_level;
-      contexts[3] = i * 36 + largest36;
-      if (!this.larger.decode(this.decoder, i)) return magnitude;
+  decode_magnitude(kind, level, visible, expected, beside, coarser) {
+    const longer = this.longer.contexts;
+    let length = 1;
+    for (; length < LONGEST; ++length) {
+      const relative = Math.max(expected - 2 * (length - 1), 0);
+      longer[0] = (Math.min(length, 6) * EXPECTED + relative) * VISIBILITY_CLASSES + visible;
+      longer[1] = relative * 4 + kind;
+      longer[2] = length * 32 + kind * 8 + level;
+      longer[3] = length * 49 + beside;
+      longer[4] = length * 64 + coarser;
+      if (!this.longer.decode(this.decoder, length * VISIBILITY_CLASSES + visible)) break;
     }
-    let length = 0;
-    while (length < LONGEST_ESCAPE && this.escape.decode(this.decoder, length)) ++length;
-    return magnitude + 2 ** length + this.decoder.uniform(length) - 1;
+    if (length === 1) return 1;
+    const first = this.first_bit.contexts;
+    first[0] = length * EXPECTED + expected;
+    first[1] = length * 32 + kind * 8 + level;
+    first[2] = length * VISIBILITY_CLASSES + visible;
+    const first_bit = this.first_bit.decode(this.decoder, length);
+    if (length === 2) return 2 + first_bit;
+    const top = (2 + first_bit) * 2 + this.second_bit.decode(this.decoder, length * 2 + first_bit);
+    return top * 2 ** (length - 3) + this.decoder.uniform(length - 3);
   }
 }

@@ -28,7 +28,8 @@ class ContextsCoder {
     const levels = rectangular_levels(patch.columns, patch.rows);
     const bands = wavelet_bands(patch.columns, patch.rows, levels);
     const support = coefficient_support(patch.columns, patch.rows, levels, patch.mask);
-    const values = this.coding.decode(decoder, patch.columns, patch.rows, bands, support);
+    const visibility = coefficient_visibility(patch.columns, patch.rows, bands, patch.mask);
+    const values = this.coding.decode(decoder, patch.columns, patch.rows, bands, support, visibility);
     return elevations_of_values(patch, bands, levels, values, this.step);
   }
 }

@@ -56,7 +56,7 @@ function read_header(bytes) {
   if (bytes.length < 4 || String.fromCharCode(...bytes.subarray(0, 4)) !== "EMAP")
     throw new StreamError("it does not begin with EMAP");
   if (bytes.length < 36) throw new StreamError("it ends within its header");
-  if (bytes[4] !== 1) throw new StreamError(`it has version ${bytes[4]}, and this page reads version 1`);
+  if (bytes[4] !== 2) throw new StreamError(`it has version ${bytes[4]}, and this page reads version 2`);
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const corner = (offset) => [0, 4, 8].map((axis) => view.getFloat32(offset + axis, true));
   const state = { next: 35 };

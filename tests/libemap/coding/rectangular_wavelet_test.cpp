@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "libemap/coding/coefficient_support.h"
@@ -91,6 +92,29 @@ TEST(CoefficientSupport, WhatIsLeftOutHardlyTouchesTheMask) {
         image[r * kColumns + c] = 1;
         rectangular_synthesis(kColumns, kRows, levels, image);
         for (std::size_t i = 0; i < image.size(); ++i) EXPECT_TRUE(!mask[i] || std::abs(image[i]) < 0.35);
+      }
+}
+
+// The oracle: samples counted one by one.
+TEST(CoefficientVisibility, IsTheShareOfTheMaskAround) {
+  constexpr std::uint32_t kColumns = 53, kRows = 38;
+  const auto mask = test::random_mask(kColumns, kRows, 4);
+  const auto bands = wavelet_bands(kColumns, kRows, rectangular_levels(kColumns, kRows));
+  const auto visibility = coefficient_visibility(kColumns, kRows, bands, mask);
+  for (const Band& band : bands)
+    for (std::uint32_t r = 0; r < band.rows; ++r)
+      for (std::uint32_t c = 0; c < band.columns; ++c) {
+        const std::uint32_t side = 1U << band.level;
+        const std::uint32_t high = side * (1 + (band.kind >> 1)), wide = side * (1 + (band.kind & 1));
+        double seen = 0;
+        for (std::uint32_t y = r * side; y < std::min(r * side + high, kRows); ++y)
+          for (std::uint32_t x = c * side; x < std::min(c * side + wide, kColumns); ++x) seen += mask[y * kColumns + x];
+        const double share = seen / (high * wide);
+        constexpr std::array<double, 4> kLimits = {0.1, 0.25, 0.5, 0.75};
+        std::uint32_t expected = share == 0 ? 0 : share == 1 ? 6 : 1;
+        if (expected == 1)
+          for (const double limit : kLimits) expected += share >= limit;
+        EXPECT_EQ(visibility[(band.row + r) * kColumns + band.column + c], expected) << band.level << ' ' << band.kind;
       }
 }
 

@@ -99,6 +99,8 @@ TEST(Stream, OtherFilesAreRefusedWithASentence) {
   auto bytes = stream_of(test::synthetic_maps(6), elevation_coders().front(), 0.1);
   bytes[4] = 9;
   EXPECT_NE(read_stream(bytes).error().message.find("version 9"), std::string::npos);
+  bytes[4] = 1;
+  EXPECT_NE(read_stream(bytes).error().message.find("encode the surface again"), std::string::npos);
   bytes[4] = kStreamVersion;
   bytes[5] = 77;
   set_stream_check(bytes);

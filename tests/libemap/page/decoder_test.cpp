@@ -145,15 +145,16 @@ TEST_P(DecoderTest, TakesDamagedStreamsAlike) {
   EXPECT_LT(refused, streams.size());
 }
 
-TEST_P(DecoderTest, AVersionOrCoderOfTheFutureIsRefusedByName) {
-  Bytes newer = synthetic_stream(GetParam(), 1, 1, 0.01), unknown = newer;
-  newer[4] = 2;
+TEST_P(DecoderTest, AnotherVersionOrCoderIsRefusedByName) {
+  Bytes newer = synthetic_stream(GetParam(), 1, 1, 0.01), older = newer, unknown = newer;
+  newer[4] = kStreamVersion + 1;
+  older[4] = kStreamVersion - 1;
   unknown[5] = 77;
-  set_stream_check(newer);
-  set_stream_check(unknown);
-  const json found = decode_in_browser({newer, unknown});
-  EXPECT_NE(found[0]["error"].get<std::string>().find("version 2"), std::string::npos);
-  EXPECT_NE(found[1]["error"].get<std::string>().find("number 77"), std::string::npos);
+  for (Bytes* stream : {&newer, &older, &unknown}) set_stream_check(*stream);
+  const json found = decode_in_browser({newer, older, unknown});
+  EXPECT_NE(found[0]["error"].get<std::string>().find("version 3"), std::string::npos);
+  EXPECT_NE(found[1]["error"].get<std::string>().find("version 1"), std::string::npos);
+  EXPECT_NE(found[2]["error"].get<std::string>().find("number 77"), std::string::npos);
 }
 
 INSTANTIATE_TEST_SUITE_P(Coders, DecoderTest, testing::Values("baseline", "contexts"));
