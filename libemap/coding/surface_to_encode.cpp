@@ -24,15 +24,29 @@ using Made = std::unique_ptr<SurfaceToEncode>;
 
 constexpr double kCleanShare = 0.97;  // of a point set's points that are used by the mesh through them
 
-double root_mean_square_distance(const std::vector<Vector3d>& points, const TriangleTree& tree) {
-  if (points.empty()) return std::numeric_limits<double>::infinity();
-  std::vector<double> squared(points.size());
-  thin::parallel_ranges(points.size(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) squared[i] = tree.closest(points[i]).distance_squared;
-  });
-  double sum = 0;
-  for (const double value : squared) sum += value;
-  return std::sqrt(sum / static_cast<double>(points.size()));
+// Triangles of a surface that are sampled one by one; where it has more, as runs of neighbours.
+constexpr std::size_t kMostSingleTriangles = 1000000;
+
+constexpr std::size_t kQuickStride = 4;  // of the samples that are used for a quick look
+
+WeightedSamples every_nth(const WeightedSamples& samples, std::size_t n) {
+  WeightedSamples result;
+  for (std::size_t i = n / 2; i < samples.positions.size(); i += n) {
+    result.positions.push_back(samples.positions[i]);
+    result.areas.push_back(samples.areas[i]);
+  }
+  return result;
+}
+
+double root_mean_square_distance(const WeightedSamples& samples, const TriangleTree& tree) {
+  if (samples.positions.empty()) return std::numeric_limits<double>::infinity();
+  const std::vector<double> squared = tree.distances_squared(samples.positions);
+  double sum = 0, area = 0;
+  for (std::size_t i = 0; i < squared.size(); ++i) {
+    sum += samples.areas[i] * squared[i];
+    area += samples.areas[i];
+  }
+  return std::sqrt(sum / area);
 }
 
 // Of the points, those that some triangle uses.
@@ -62,13 +76,17 @@ struct MeasuredMesh {
         box(given_box),
         is_points(from_points),
         tree(mesh),
-        samples(sample_surface(mesh, samples_wanted, 1)) {}
+        sample_count(samples_wanted),
+        samples(sample_every_part(mesh, samples_wanted,
+                                  mesh.triangles.size() > kMostSingleTriangles ? mesh.triangles.size() : 0, 1)),
+        quick_samples(every_nth(samples, kQuickStride)) {}
 
   Mesh mesh;
   BoundingBox box;
   bool is_points;
   TriangleTree tree;
-  std::vector<Vector3d> samples;
+  std::size_t sample_count;
+  WeightedSamples samples, quick_samples;
 };
 
 class PartitionedMesh : public SurfaceToEncode {
@@ -103,12 +121,16 @@ class PartitionedMesh : public SurfaceToEncode {
     return resample_mesh(measured_->mesh, partition_, planes, spacing);
   }
 
-  double error_of(const ElevationMaps& decoded) const override {
-    const Mesh mesh = closed_mesh(decoded).mesh;
+  double error_of(const ElevationMaps& decoded, bool quick) const override {
+    const auto [mesh, filling] = closed_mesh(decoded);
     if (mesh.triangles.empty()) return std::numeric_limits<double>::infinity();
-    const std::vector<Vector3d>& samples = measured_->samples;
-    const double missing = root_mean_square_distance(samples, TriangleTree(mesh));
-    return std::max(missing, root_mean_square_distance(sample_surface(mesh, samples.size(), 2), measured_->tree));
+    const double missing =
+        root_mean_square_distance(quick ? measured_->quick_samples : measured_->samples, TriangleTree(mesh));
+    // What fills gaps is where a decoded surface may be wrong in ways that are rare: looked at triangle by triangle.
+    const WeightedSamples samples =
+        quick ? sample_every_part(mesh, measured_->sample_count / kQuickStride, mesh.triangles.size(), 2)
+              : sample_every_part(mesh, measured_->sample_count, mesh.triangles.size() - filling.inserted, 2);
+    return std::max(missing, root_mean_square_distance(samples, measured_->tree));
   }
 
   Result<Made> repartitioned(const PartitionOptions& options) const override { return made(measured_, options); }
