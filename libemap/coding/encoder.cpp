@@ -23,6 +23,8 @@ constexpr std::uint32_t kFewestSamples = 16;
 constexpr std::uint32_t kMostSamples = 6000;
 constexpr double kResolutionRatio = 1.2599;  // between resolutions that are tried: the cube root of two
 
+constexpr double kLeastHelp = 0.95;  // of the error, that is left by a finer resolution that is worth going on
+
 constexpr double kCoarsestError = 1e-3;  // in diagonals, that partitions are made for
 // Share of the error that scraps may make up, which saves patches of their own. Where it is much, rare large errors are
 // what is left of the surface's folds.
@@ -102,7 +104,7 @@ class Search {
     return static_cast<int>(std::clamp(3e6 / static_cast<double>(surface_->point_count()), 3.0, 10.0));
   }
 
-  // Finer maps until the quality is reached, or coarser ones until the rate is.
+  // Finer maps until the quality is reached, or coarser ones until the rate is; a quality only as long as that helps.
   EncodingTrial climbed(EncodingTrial best) const {
     for (int tried = 1; tried < std::min(most_resolutions(), 6) && !best.meets_target; ++tried) {
       const std::uint32_t next = scaled(best.samples_per_diagonal, target_.is_quality() ? 1.6 : 1 / 1.6);
@@ -110,7 +112,9 @@ class Search {
       EncodingTrial trial = at(best.surface, next, 0);
       // Not by which is better: of two that fail, the next one goes on from the latter.
       if (trial.stream.empty() && !best.stream.empty()) break;
+      const bool helps = !(trial.error > kLeastHelp * best.error) || !std::isfinite(best.error);
       best = std::move(trial);
+      if (!helps) break;
     }
     return best;
   }

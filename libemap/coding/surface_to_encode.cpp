@@ -8,6 +8,7 @@
 #include "libemap/elevation/canonical_mesh.h"
 #include "libemap/elevation/gap_filling.h"
 #include "libemap/elevation/resampling.h"
+#include "libemap/surface/mesh_repair.h"
 #include "libemap/surface/mls_surface.h"
 #include "libemap/surface/point_mesh.h"
 #include "libemap/surface/point_normals.h"
@@ -71,8 +72,10 @@ Mesh mesh_standing_for(PointSet& points) {
 
 // What all partitions of a surface share: its mesh, and what decoded ones are measured by.
 struct MeasuredMesh {
-  MeasuredMesh(Mesh given, const BoundingBox& given_box, bool from_points, std::size_t samples_wanted)
+  MeasuredMesh(Mesh given, std::size_t given_points, const BoundingBox& given_box, bool from_points,
+               std::size_t samples_wanted)
       : mesh(std::move(given)),
+        point_count(given_points),
         box(given_box),
         is_points(from_points),
         tree(mesh),
@@ -82,6 +85,7 @@ struct MeasuredMesh {
         quick_samples(every_nth(samples, kQuickStride)) {}
 
   Mesh mesh;
+  std::size_t point_count;  // of what was given
   BoundingBox box;
   bool is_points;
   TriangleTree tree;
@@ -104,7 +108,7 @@ class PartitionedMesh : public SurfaceToEncode {
   }
 
   bool is_points() const override { return measured_->is_points; }
-  std::size_t point_count() const override { return measured_->mesh.positions.size(); }
+  std::size_t point_count() const override { return measured_->point_count; }
   const BoundingBox& box() const override { return measured_->box; }
   const std::vector<BasePlane>& planes() const override { return planes_; }
 
@@ -142,21 +146,25 @@ class PartitionedMesh : public SurfaceToEncode {
   std::vector<std::vector<std::uint32_t>> elements_;
 };
 
-Result<Made> partitioned(Mesh mesh, const BoundingBox& box, bool is_points, const PartitionOptions& options,
-                         std::size_t samples) {
+Result<Made> partitioned(Mesh mesh, std::size_t point_count, const BoundingBox& box, bool is_points,
+                         const PartitionOptions& options, std::size_t samples) {
   if (mesh.triangles.empty())
     return thin::Error{thin::ErrorKind::input, is_points
                                                    ? "the points lie on a line or too far apart to make a surface"
                                                    : "the mesh has no triangles to make patches of; read it as points"};
-  return PartitionedMesh::made(std::make_shared<const MeasuredMesh>(std::move(mesh), box, is_points, samples), options);
+  return PartitionedMesh::made(
+      std::make_shared<const MeasuredMesh>(std::move(mesh), point_count, box, is_points, samples), options);
 }
 
 }  // namespace
 
 Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(Mesh mesh, const PartitionOptions& options,
                                                         std::size_t samples) {
+  const std::size_t point_count = mesh.positions.size();
+  mesh = weld_vertices(mesh);
+  orient_consistently(mesh);
   const BoundingBox box = bounding_box(mesh.positions);
-  return partitioned(std::move(mesh), box, false, options, samples);
+  return partitioned(std::move(mesh), point_count, box, false, options, samples);
 }
 
 Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const PartitionOptions& options,
@@ -165,7 +173,8 @@ Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const
     return thin::Error{thin::ErrorKind::input, "fewer than three points make no surface"};
   ensure_normals(points);
   const BoundingBox box = bounding_box(points.positions);
-  return partitioned(mesh_standing_for(points), box, true, options, samples);
+  Mesh mesh = mesh_standing_for(points);
+  return partitioned(std::move(mesh), points.positions.size(), box, true, options, samples);
 }
 
 }  // namespace emap

@@ -10,6 +10,7 @@ namespace emap {
 namespace {
 
 constexpr std::uint32_t kLeafSize = 4;
+constexpr std::size_t kGrain = 4096;
 
 Eigen::Vector3d closest_on_segment(const Eigen::Vector3d& point, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const Eigen::Vector3d along = b - a;
@@ -50,6 +51,25 @@ float rounded_down(double value) {
   return nearest <= value ? nearest : std::nextafter(nearest, -std::numeric_limits<float>::infinity());
 }
 
+// Two halves along the longest axis.
+template <class Centre>
+void part(std::span<Centre> centres) {
+  if (centres.size() <= kLeafSize) return;
+  std::array<float, 3> low = centres[0].sum, high = low;
+  for (const Centre& centre : centres)
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], centre.sum[i]);
+      high[i] = std::max(high[i], centre.sum[i]);
+    }
+  std::size_t axis = 0;
+  for (std::size_t i = 1; i < 3; ++i)
+    if (high[i] - low[i] > high[axis] - low[axis]) axis = i;
+  const auto middle = centres.begin() + static_cast<std::ptrdiff_t>(centres.size() / 2);
+  std::nth_element(centres.begin(), middle, centres.end(), [axis](const Centre& a, const Centre& b) {
+    return a.sum[axis] != b.sum[axis] ? a.sum[axis] < b.sum[axis] : a.triangle < b.triangle;
+  });
+}
+
 }  // namespace
 
 double TriangleTree::Node::distance_squared(const Eigen::Vector3d& point) const {
@@ -63,51 +83,36 @@ double TriangleTree::Node::distance_squared(const Eigen::Vector3d& point) const 
 }
 
 TriangleTree::TriangleTree(const Mesh& mesh) {
-  triangles_.reserve(mesh.triangles.size());
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto& triangle = mesh.triangles[i];
-    triangles_.push_back({mesh.positions[triangle[0]], mesh.positions[triangle[1]], mesh.positions[triangle[2]], i});
-  }
-  if (triangles_.empty()) return;
-  nodes_.reserve(triangles_.size());
-  nodes_.push_back({{}, {}, 0, static_cast<std::uint32_t>(triangles_.size())});
+  if (mesh.triangles.empty()) return;
+  std::vector<Centre> centres(mesh.triangles.size());
+  thin::parallel_ranges(centres.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& corners = mesh.triangles[i];
+      const Eigen::Vector3f sum =
+          (mesh.positions[corners[0]] + mesh.positions[corners[1]] + mesh.positions[corners[2]]).cast<float>();
+      centres[i] = {{sum.x(), sum.y(), sum.z()}, static_cast<std::uint32_t>(i)};
+    }
+  });
+  nodes_.push_back({{}, {}, 0, static_cast<std::uint32_t>(centres.size())});
   // Level by level: the nodes of one have disjoint triangles, and their children come behind them in order.
   for (std::size_t first = 0; first < nodes_.size();) {
     const std::size_t last = nodes_.size();
     thin::parallel_ranges(last - first, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t node = begin; node < end; ++node) enclose_and_part(nodes_[first + node]);
+      for (std::size_t node = first + begin; node < first + end; ++node)
+        part(std::span(centres).subspan(nodes_[node].begin, nodes_[node].end - nodes_[node].begin));
     });
     for (std::size_t node = first; node < last; ++node) add_children(static_cast<std::uint32_t>(node));
     first = last;
   }
-}
-
-// The node's bounds; its triangles in two halves along the longest axis.
-void TriangleTree::enclose_and_part(Node& node) {
-  const std::uint32_t begin = node.begin, end = node.end;
-  Eigen::Array3d minimum = triangles_[begin].a, maximum = minimum, low = Eigen::Array3d::Constant(1e300), high = -low;
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const Corners& corners = triangles_[i];
-    minimum = minimum.min(corners.a.array()).min(corners.b.array()).min(corners.c.array());
-    maximum = maximum.max(corners.a.array()).max(corners.b.array()).max(corners.c.array());
-    const Eigen::Array3d centre = (corners.a + corners.b + corners.c).array();
-    low = low.min(centre);
-    high = high.max(centre);
-  }
-  for (std::size_t i = 0; i < 3; ++i) {
-    node.minimum[i] = rounded_down(minimum[static_cast<Eigen::Index>(i)]);
-    node.maximum[i] = -rounded_down(-maximum[static_cast<Eigen::Index>(i)]);
-  }
-  if (end - begin <= kLeafSize) return;
-  Eigen::Index axis = 0;
-  (high - low).maxCoeff(&axis);
-  const std::uint32_t middle = begin + (end - begin) / 2;
-  std::nth_element(triangles_.begin() + begin, triangles_.begin() + middle, triangles_.begin() + end,
-                   [axis](const Corners& left, const Corners& right) {
-                     const double a = left.a[axis] + left.b[axis] + left.c[axis];
-                     const double b = right.a[axis] + right.b[axis] + right.c[axis];
-                     return a != b ? a < b : left.triangle < right.triangle;
-                   });
+  triangles_.resize(centres.size());
+  thin::parallel_ranges(centres.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& corners = mesh.triangles[centres[i].triangle];
+      triangles_[i] = {mesh.positions[corners[0]], mesh.positions[corners[1]], mesh.positions[corners[2]],
+                       centres[i].triangle};
+    }
+  });
+  for (std::size_t node = nodes_.size(); node-- > 0;) enclose(nodes_[node]);
 }
 
 void TriangleTree::add_children(std::uint32_t node) {
@@ -116,6 +121,28 @@ void TriangleTree::add_children(std::uint32_t node) {
   nodes_[node].left = static_cast<std::uint32_t>(nodes_.size());
   nodes_.push_back({{}, {}, begin, middle});
   nodes_.push_back({{}, {}, middle, end});
+}
+
+// The children's bounds are there already.
+void TriangleTree::enclose(Node& node) const {
+  if (node.left != 0) {
+    const Node &left = nodes_[node.left], &right = nodes_[node.left + 1];
+    for (std::size_t i = 0; i < 3; ++i) {
+      node.minimum[i] = std::min(left.minimum[i], right.minimum[i]);
+      node.maximum[i] = std::max(left.maximum[i], right.maximum[i]);
+    }
+    return;
+  }
+  Eigen::Array3d minimum = triangles_[node.begin].a, maximum = minimum;
+  for (std::uint32_t i = node.begin; i < node.end; ++i)
+    for (const Eigen::Vector3d& corner : {triangles_[i].a, triangles_[i].b, triangles_[i].c}) {
+      minimum = minimum.min(corner.array());
+      maximum = maximum.max(corner.array());
+    }
+  for (std::size_t i = 0; i < 3; ++i) {
+    node.minimum[i] = rounded_down(minimum[static_cast<Eigen::Index>(i)]);
+    node.maximum[i] = -rounded_down(-maximum[static_cast<Eigen::Index>(i)]);
+  }
 }
 
 TriangleTree::Closest TriangleTree::closest(const Eigen::Vector3d& point, double bound_squared) const {

@@ -48,8 +48,13 @@ class TriangleTree {
     std::uint32_t triangle;
   };
 
-  void enclose_and_part(Node& node);
+  struct Centre {
+    std::array<float, 3> sum;  // of the corners
+    std::uint32_t triangle;
+  };
+
   void add_children(std::uint32_t node);
+  void enclose(Node& node) const;
 
   std::vector<Corners> triangles_;  // in the order of the leaves
   std::vector<Node> nodes_;
