@@ -41,8 +41,7 @@ struct Cut {
 
 // Steep slopes cost more than fewer patches save, down to about 65 degrees; what does best differs between models by
 // more than can be told beforehand.
-constexpr std::array kCuts = {Cut{70, 60}, Cut{70, 20}, Cut{65, 60}, Cut{60, 60},
-                              Cut{60, 99}, Cut{70, 2},  Cut{75, 20}, Cut{80, 2}};
+constexpr std::array kCuts = {Cut{70, 60}, Cut{70, 20}, Cut{65, 60}, Cut{60, 99}, Cut{70, 2}, Cut{80, 2}};
 constexpr std::array kCutsOfManyPoints = {Cut{70, 60}, Cut{80, 2}};
 
 class Search {
