@@ -26,10 +26,13 @@ constexpr double kResolutionRatio = 1.2599;  // between resolutions that are tri
 constexpr double kLeastHelp = 0.95;  // of the error, that is left by a finer resolution that is worth going on
 
 constexpr double kCoarsestError = 1e-3;  // in diagonals, that partitions are made for
+constexpr double kFineError = 1.5e-4;    // below, other cuts gain little where there are many patches
 // Share of the error that scraps may make up, which saves patches of their own. Where it is much, rare large errors are
 // what is left of the surface's folds.
 constexpr double kScrapShare = 0.15;
-constexpr std::size_t kManyPoints = 200000;  // beyond, few other partitions are tried; beyond five times as many, none
+// Beyond, partitions take seconds: few others are tried, and only for large errors; beyond five times as many, only
+// where the first does not lead to the rate.
+constexpr std::size_t kManyPoints = 200000;
 constexpr std::size_t kMostPointsAtOnce = 2000000;  // of all tries that run at the same time
 constexpr std::size_t kMostAtOnce = 8;
 
@@ -154,11 +157,11 @@ class Search {
   // Each of many ways to cut is looked at once, at the best try's resolution and step; those around the one that does
   // best likewise; then the two that did best go the whole way.
   EncodingTrial with_best_partition(EncodingTrial best) const {
-    if (surface_->point_count() > 5 * kManyPoints || best.stream.empty()) {
-      if (best.meets_target || target_.is_quality()) return best;
-    }
     const bool has_many_points = surface_->point_count() > kManyPoints;
     const double error = error_to_cut_for(best) / target_.diagonal;
+    const bool would_gain_little = error < kFineError || surface_->point_count() > 5 * kManyPoints;
+    if (has_many_points && best.meets_target && would_gain_little) return best;
+    if (target_.is_quality() && !best.meets_target && has_many_points) return best;
     std::vector<Cut> cuts = has_many_points ? std::vector(kCutsOfManyPoints.begin(), kCutsOfManyPoints.end())
                                             : std::vector(kCuts.begin(), kCuts.end());
     std::vector<EncodingTrial> looks = looked_at(cuts, 0, error, best);
