@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
-#include <map>
-#include <optional>
+#include <numeric>
 #include <utility>
 
+#include "libemap/coding/encoding_trial.h"
 #include "libemap/coding/stream.h"
 #include "libthin/foundation/parallel.h"
 
@@ -21,97 +21,58 @@ using thin::Result;
 
 constexpr std::uint32_t kFewestSamples = 16;
 constexpr std::uint32_t kMostSamples = 6000;
-constexpr double kClose = 0.985;             // of a wanted size or error: near enough
 constexpr double kResolutionRatio = 1.2599;  // between resolutions that are tried: the cube root of two
 
+constexpr double kLeastHelp = 0.95;  // of the error, that is left by a finer resolution that is worth going on
+
 constexpr double kCoarsestError = 1e-3;  // in diagonals, that partitions are made for
-// Beyond which other partitions, which take seconds each, are tried only where the first does not lead to the target.
+constexpr double kFineError = 1.5e-4;    // below, other cuts gain little where there are many patches
+// Share of the error that scraps may make up, which saves patches of their own. Where it is much, rare large errors are
+// what is left of the surface's folds.
+constexpr double kScrapShare = 0.15;
+// Beyond, partitions take seconds: few others are tried, and only for large errors; beyond five times as many, only
+// where the first does not lead to the rate.
 constexpr std::size_t kManyPoints = 200000;
+constexpr std::size_t kMostPointsAtOnce = 2000000;  // of all tries that run at the same time
+constexpr std::size_t kMostAtOnce = 8;
 
-// A surface sampled at one resolution, ready to be written.
-struct Resolution {
-  std::uint32_t samples_per_diagonal;
-  StreamWriter writer;
+// How a surface may be cut: the aperture, and rounds of smoothing of the normals that it is for.
+struct Cut {
+  int aperture_degrees, smoothing_rounds;
+  bool operator==(const Cut&) const = default;
 };
 
-struct Trial {
-  std::vector<std::uint8_t> stream;
-  double step = 0;
-  double error = std::numeric_limits<double>::infinity();
-  std::uint32_t samples_per_diagonal = 0;
-  bool meets_target = false;
-};
+// Steep slopes cost more than fewer patches save, down to about 65 degrees; what does best differs between models by
+// more than can be told beforehand.
+constexpr std::array kCuts = {Cut{70, 60}, Cut{70, 20}, Cut{65, 60}, Cut{60, 99}, Cut{70, 2}, Cut{80, 2}};
+constexpr std::array kCutsOfManyPoints = {Cut{70, 60}, Cut{80, 2}};
 
 class Search {
  public:
   Search(const SurfaceToEncode& surface, const EncoderOptions& options)
-      : surface_(&surface), options_(options), diagonal_(stream_frame(surface.box(), 1).box.diagonal()) {
-    if (options.bits_per_point) most_bytes_ = *options.bits_per_point * static_cast<double>(surface.point_count()) / 8;
-    if (options.psnr_db) largest_error_ = diagonal_ * std::pow(10.0, -*options.psnr_db / 20);
+      : surface_(&surface, [](const SurfaceToEncode*) {}), options_(options) {
+    target_.diagonal = stream_frame(surface.box(), 1).box.diagonal();
+    if (options.bits_per_point)
+      target_.most_bytes = *options.bits_per_point * static_cast<double>(surface.point_count()) / 8;
+    if (options.psnr_db) target_.largest_error = target_.diagonal * std::pow(10.0, -*options.psnr_db / 20);
+    target_.coder = options.coder;
+    target_.distribution = options.distribution;
   }
 
   Result<Encoded> run() {
-    Trial best = at(options_.samples_per_diagonal.value_or(first_guess()));
+    EncodingTrial best = at(surface_, options_.samples_per_diagonal.value_or(first_guess()), 0);
+    // A rate that is not met wants fewer patches, a quality that is not met finer maps.
+    if (target_.is_quality() && !options_.samples_per_diagonal) best = climbed(std::move(best));
     if (options_.may_repartition) best = with_best_partition(std::move(best));
-    if (options_.samples_per_diagonal) return finished(std::move(best));
-    // Work is bounded by the size of the model, not by the clock: the same model gives the same bytes everywhere.
-    const auto resolutions =
-        static_cast<int>(std::clamp(3e6 / static_cast<double>(surface_->point_count()), 3.0, 10.0));
-    for (int climb = 0, tried = 1; tried < resolutions && !best.meets_target && climb < 6; ++climb, ++tried)
-      best = better(std::move(best), at(scaled(best.samples_per_diagonal, options_.psnr_db ? 1.6 : 1 / 1.6)));
-    if (!best.meets_target) return finished(std::move(best));
-    for (const double ratio : {1 / kResolutionRatio, kResolutionRatio})
-      for (int tried = 0; tried < resolutions / 2; ++tried) {
-        const std::uint32_t next = scaled(best.samples_per_diagonal, ratio);
-        if (seen_.contains(next)) break;
-        Trial trial = at(next);
-        const bool improved = is_better(trial, best);
-        best = better(std::move(best), std::move(trial));
-        if (!improved) break;
-      }
-    return finished(std::move(best));
+    if (options_.samples_per_diagonal) return finished(best);
+    best = climbed(std::move(best));
+    if (!best.meets_target) return finished(best);
+    return finished(at_best_resolution(std::move(best)));
   }
 
  private:
   static std::uint32_t scaled(std::uint32_t samples, double ratio) {
     return std::clamp(static_cast<std::uint32_t>(std::lround(samples * ratio)), kFewestSamples, kMostSamples);
-  }
-
-  // Of the partitions that suit such errors, the one that does best at this resolution stays.
-  Trial with_best_partition(Trial best) {
-    if (best.meets_target && surface_->point_count() > kManyPoints) return best;
-    const double error = std::clamp(options_.psnr_db    ? largest_error_
-                                    : best.meets_target ? best.error
-                                                        : kCoarsestError * diagonal_,
-                                    0.0, kCoarsestError * diagonal_);
-    const std::uint32_t samples = best.samples_per_diagonal;
-    for (const PartitionOptions& partition : partitions_for(error / diagonal_)) {
-      Result<std::unique_ptr<SurfaceToEncode>> other = surface_->repartitioned(partition);
-      if (!other) continue;
-      const SurfaceToEncode* last = std::exchange(surface_, other->get());
-      if (options_.progress) options_.progress(fmt::format("{} patches", surface_->planes().size()));
-      Trial trial = at(samples);
-      if (is_better(trial, best)) {
-        best = std::move(trial);
-        repartitioned_ = std::move(*other);
-      } else {
-        surface_ = last;
-      }
-    }
-    return best;
-  }
-
-  // error: in diagonals. Normals are smoothed more, and what lies nearer than the error counts as one sheet.
-  std::vector<PartitionOptions> partitions_for(double error) const {
-    std::vector<PartitionOptions> partitions;
-    for (const int smoothing_rounds : {8, 20, 60}) {
-      PartitionOptions partition;
-      partition.smoothing_rounds = smoothing_rounds;
-      partition.fold_tolerance = std::max(partition.fold_tolerance, error);
-      partition.scrap_error = std::max(partition.scrap_error, 0.4 * error);
-      partitions.push_back(partition);
-    }
-    return partitions;
   }
 
   // A bit or two for each sample of the maps are about right for a rate; for a quality, interpolation errs by a power
@@ -120,133 +81,169 @@ class Search {
     constexpr double kAreaOfDiagonalSquared = 0.8;  // of usual models
     const double finer = (options_.coder->leaves_finest_band_out ? 1 : 0.8) * (surface_->is_points() ? 1.3 : 1);
     if (options_.psnr_db) return scaled(1, finer * 520 * std::pow(10.0, (*options_.psnr_db - 80) / 45));
-    return scaled(1, finer * 1.25 * std::sqrt(8 * most_bytes_ / kAreaOfDiagonalSquared));
+    return scaled(1, finer * 1.25 * std::sqrt(8 * target_.most_bytes / kAreaOfDiagonalSquared));
   }
 
-  bool is_better(const Trial& a, const Trial& b) const {
-    if (a.meets_target != b.meets_target) return a.meets_target;
-    if (options_.psnr_db && a.meets_target) return a.stream.size() < b.stream.size();
-    return a.error < b.error;
-  }
-  Trial better(Trial a, Trial b) const { return is_better(b, a) ? std::move(b) : std::move(a); }
-
-  Trial at(std::uint32_t samples_per_diagonal) {
-    seen_[samples_per_diagonal] = true;
-    Resolution resolution = sampled(samples_per_diagonal);
-    Trial trial = options_.psnr_db ? to_quality(resolution) : to_rate(resolution);
-    trial.samples_per_diagonal = samples_per_diagonal;
-    if (trial.meets_target) last_step_ = trial.step;
-    if (options_.progress)
-      options_.progress(fmt::format("{} samples to the diagonal: {} bytes, {:.2f} dB{}", samples_per_diagonal,
-                                    trial.stream.size(), psnr_db(trial.error),
-                                    trial.meets_target ? "" : " (not what is wanted)"));
+  EncodingTrial at(const SharedSurface& surface, std::uint32_t samples_per_diagonal, double first_step) const {
+    EncodingTrial trial = try_to_meet(target_, surface, samples_per_diagonal, first_step);
+    tell(trial);
     return trial;
   }
 
-  Resolution sampled(std::uint32_t samples_per_diagonal) const {
-    const StreamFrame frame = stream_frame(surface_->box(), samples_per_diagonal);
-    std::vector<CodedPlane> coded(surface_->planes().size());
-    std::vector<BasePlane> planes(coded.size());
-    thin::parallel_ranges(coded.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        coded[i] = quantise_plane(surface_->planes()[i], surface_->positions_of(i), frame);
-        planes[i] = base_plane_of(coded[i], frame);
-      }
+  void tell(const EncodingTrial& trial) const {
+    if (options_.progress)
+      options_.progress(fmt::format("{} patches, {} samples to the diagonal: {} bytes, {:.2f} dB{}",
+                                    trial.surface->planes().size(), trial.samples_per_diagonal, trial.stream.size(),
+                                    target_.psnr_db(trial.error), trial.meets_target ? "" : " (not what is wanted)"));
+  }
+
+  EncodingTrial better(EncodingTrial a, EncodingTrial b) const {
+    return is_better(target_, b, a) ? std::move(b) : std::move(a);
+  }
+
+  // Work is bounded by the size of the model, not by the clock: the same model gives the same bytes everywhere.
+  int most_resolutions() const {
+    return static_cast<int>(std::clamp(3e6 / static_cast<double>(surface_->point_count()), 3.0, 10.0));
+  }
+
+  // Finer maps until the quality is reached, or coarser ones until the rate is; a quality only as long as that helps.
+  EncodingTrial climbed(EncodingTrial best) const {
+    for (int tried = 1; tried < std::min(most_resolutions(), 6) && !best.meets_target; ++tried) {
+      const std::uint32_t next = scaled(best.samples_per_diagonal, target_.is_quality() ? 1.6 : 1 / 1.6);
+      if (next == best.samples_per_diagonal) break;
+      EncodingTrial trial = at(best.surface, next, 0);
+      // Not by which is better: of two that fail, the next one goes on from the latter.
+      if (trial.stream.empty() && !best.stream.empty()) break;
+      const bool helps = !(trial.error > kLeastHelp * best.error) || !std::isfinite(best.error);
+      best = std::move(trial);
+      if (!helps) break;
+    }
+    return best;
+  }
+
+  // The next finer and the next coarser resolution; on in the direction that is better, as long as it is.
+  EncodingTrial at_best_resolution(EncodingTrial best) const {
+    const std::uint32_t middle = best.samples_per_diagonal;
+    std::vector<EncodingTrial> sides = all_of(2, [&, step = best.step](std::size_t i) {
+      return try_to_meet(target_, best.surface, scaled(middle, i == 0 ? 1 / kResolutionRatio : kResolutionRatio), step);
     });
-    ElevationMaps maps = surface_->resample(planes, frame.spacing());
-    maps.diagonal = frame.box.diagonal();
-    drop_empty(coded, maps);
-    return {samples_per_diagonal, StreamWriter(*options_.coder, frame, std::move(coded), std::move(maps),
-                                               surface_->is_points(), options_.distribution)};
-  }
-
-  // Patches between whose samples everything falls.
-  static void drop_empty(std::vector<CodedPlane>& planes, ElevationMaps& maps) {
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-      const std::vector<std::uint8_t>& mask = maps.patches[i].mask;
-      if (std::find(mask.begin(), mask.end(), 1) == mask.end()) continue;
-      if (kept != i) {
-        planes[kept] = planes[i];
-        maps.patches[kept] = std::move(maps.patches[i]);
+    for (std::size_t side = 0; side < sides.size(); ++side) {
+      tell(sides[side]);
+      const double ratio = side == 0 ? 1 / kResolutionRatio : kResolutionRatio;
+      EncodingTrial trial = std::move(sides[side]);
+      for (int tried = 1; is_better(target_, trial, best); ++tried) {
+        best = std::move(trial);
+        if (tried >= most_resolutions() / 2) break;
+        trial = at(best.surface, scaled(best.samples_per_diagonal, ratio), best.step);
       }
-      ++kept;
-    }
-    planes.resize(kept);
-    maps.patches.resize(kept);
-  }
-
-  double first_step() const {
-    if (last_step_ > 0) return last_step_;
-    return options_.psnr_db ? 6 * largest_error_ : 7e-4 * diagonal_;
-  }
-
-  // The largest stream that fits, or nearly: false position between the logarithms of steps and sizes.
-  Trial to_rate(Resolution& resolution) {
-    struct Side {
-      double log_step, log_ratio;
-    };
-    std::optional<Side> fits, exceeds;
-    Trial best;
-    double log_step = std::log(first_step());
-    for (int round = 0; round < 9; ++round) {
-      std::vector<std::uint8_t> stream = resolution.writer.write(std::exp(log_step));
-      const double ratio = static_cast<double>(stream.size()) / most_bytes_;
-      (ratio <= 1 ? fits : exceeds) = Side{log_step, std::log(ratio)};
-      if (ratio <= 1 && stream.size() > best.stream.size()) {
-        best.stream = std::move(stream);
-        best.step = std::exp(log_step);
-        best.meets_target = true;
-      }
-      if ((ratio <= 1 && ratio >= kClose) || (round >= 5 && best.meets_target)) break;
-      const double wanted = std::log(kClose) / 2;
-      if (fits && exceeds)
-        log_step = fits->log_step + (exceeds->log_step - fits->log_step) * (wanted - fits->log_ratio) /
-                                        (exceeds->log_ratio - fits->log_ratio);
-      else
-        log_step += std::clamp(1.3 * (std::log(ratio) - wanted), -1.6, 2.0);
-    }
-    if (best.meets_target) best.error = error_of(best.stream);
-    best.meets_target = std::isfinite(best.error);
-    return best;
-  }
-
-  // The smallest stream that is good enough, or nearly.
-  Trial to_quality(Resolution& resolution) {
-    Trial best;
-    double step = first_step();
-    double exponent = 1;
-    double last_ratio = 0, last_step = 0;
-    for (int round = 0; round < 6; ++round) {
-      Trial trial;
-      trial.stream = resolution.writer.write(step);
-      trial.step = step;
-      trial.error = error_of(trial.stream);
-      const double ratio = trial.error / largest_error_;
-      trial.meets_target = ratio <= 1;
-      if (best.stream.empty() || is_better(trial, best)) best = std::move(trial);
-      if ((ratio <= 1 && ratio >= kClose) || (round >= 3 && best.meets_target)) break;
-      // How the error goes with the step was seen in the last two rounds; where it hardly does, the grid is too coarse.
-      if (last_step > 0) {
-        exponent = std::log(ratio / last_ratio) / std::log(step / last_step);
-        if (exponent < 0.08 && ratio > 1) break;
-        exponent = std::clamp(exponent, 0.25, 1.2);
-      }
-      last_ratio = ratio;
-      last_step = step;
-      step *= std::clamp(std::pow(0.993 / ratio, 1 / exponent), 0.1, 8.0);
+      if (best.samples_per_diagonal != middle) break;
     }
     return best;
   }
 
-  double error_of(const std::vector<std::uint8_t>& stream) const {
-    const Result<DecodedStream> decoded = read_stream(stream);
-    return decoded ? surface_->error_of(decoded->maps) : std::numeric_limits<double>::infinity();
+  // make(0) ... make(count - 1), as many at once as memory should bear; in their order.
+  template <class Make>
+  std::vector<EncodingTrial> all_of(std::size_t count, const Make& make) const {
+    const std::size_t at_once =
+        std::clamp<std::size_t>(kMostPointsAtOnce / std::max<std::size_t>(surface_->point_count(), 1), 1, kMostAtOnce);
+    std::vector<EncodingTrial> trials(count);
+    for (std::size_t first = 0; first < count; first += at_once)
+      thin::parallel_ranges(std::min(at_once, count - first), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = first + begin; i < first + end; ++i) trials[i] = make(i);
+      });
+    return trials;
   }
 
-  double psnr_db(double error) const { return 20 * std::log10(diagonal_ / error); }
+  // Each of many ways to cut is looked at once, at the best try's resolution and step; those around the one that does
+  // best likewise; then the two that did best go the whole way.
+  EncodingTrial with_best_partition(EncodingTrial best) const {
+    const bool has_many_points = surface_->point_count() > kManyPoints;
+    const double error = error_to_cut_for(best) / target_.diagonal;
+    const bool would_gain_little = error < kFineError || surface_->point_count() > 5 * kManyPoints;
+    if (has_many_points && best.meets_target && would_gain_little) return best;
+    if (target_.is_quality() && !best.meets_target && has_many_points) return best;
+    std::vector<Cut> cuts = has_many_points ? std::vector(kCutsOfManyPoints.begin(), kCutsOfManyPoints.end())
+                                            : std::vector(kCuts.begin(), kCuts.end());
+    std::vector<EncodingTrial> looks = looked_at(cuts, 0, error, best);
+    if (!has_many_points) {
+      const std::size_t known = cuts.size();
+      add_cuts_around(cuts[order_of(looks).front()], cuts);
+      for (EncodingTrial& look : looked_at(cuts, known, error, best)) looks.push_back(std::move(look));
+    }
+    const std::vector<std::size_t> order = order_of(looks);
+    const double own_cost = cost_at_equal_quality(target_, best);
+    const std::size_t finalists = std::min<std::size_t>(has_many_points ? 1 : 2, order.size());
+    std::vector<EncodingTrial> finals = all_of(finalists, [&](std::size_t i) {
+      const EncodingTrial& look = looks[order[i]];
+      const bool is_hopeless = best.meets_target && cost_at_equal_quality(target_, look) > own_cost;
+      return look.surface && !is_hopeless
+                 ? try_to_meet(target_, look.surface, best.samples_per_diagonal, best.meets_target ? best.step : 0)
+                 : EncodingTrial{};
+    });
+    for (EncodingTrial& trial : finals) {
+      if (!trial.surface) continue;
+      tell(trial);
+      best = better(std::move(best), std::move(trial));
+    }
+    return best;
+  }
 
-  Result<Encoded> finished(Trial trial) const {
+  // Where a rate is not met, errors are as large as they may be.
+  double error_to_cut_for(const EncodingTrial& best) const {
+    const double coarsest = kCoarsestError * target_.diagonal;
+    if (target_.is_quality()) return std::min(target_.largest_error, coarsest);
+    return best.meets_target ? std::min(best.error, coarsest) : coarsest;
+  }
+
+  // Those from `first` on. A cut that fails is one without a surface.
+  std::vector<EncodingTrial> looked_at(const std::vector<Cut>& cuts, std::size_t first, double error,
+                                       const EncodingTrial& best) const {
+    std::vector<EncodingTrial> looks = all_of(cuts.size() - first, [&](std::size_t i) {
+      Result<std::unique_ptr<SurfaceToEncode>> cut = surface_->repartitioned(partition_for(cuts[first + i], error));
+      if (!cut) return EncodingTrial{};
+      const SharedSurface surface = std::move(*cut);
+      return best.meets_target ? try_step(target_, surface, best.samples_per_diagonal, best.step)
+                               : try_to_meet(target_, surface, best.samples_per_diagonal, 0);
+    });
+    if (options_.progress)
+      for (std::size_t i = 0; i < looks.size(); ++i)
+        if (looks[i].surface)
+          options_.progress(fmt::format("aperture {}, smoothing {}: {} patches, {} bytes, {:.2f} dB",
+                                        cuts[first + i].aperture_degrees, cuts[first + i].smoothing_rounds,
+                                        looks[i].surface->planes().size(), looks[i].stream.size(),
+                                        target_.psnr_db(looks[i].error)));
+    return looks;
+  }
+
+  // error: in diagonals. What lies nearer than it counts as one sheet.
+  static PartitionOptions partition_for(const Cut& cut, double error) {
+    PartitionOptions partition;
+    partition.aperture_degrees = cut.aperture_degrees;
+    partition.smoothing_rounds = cut.smoothing_rounds;
+    partition.fold_tolerance = std::max(partition.fold_tolerance, error);
+    partition.scrap_error = std::max(partition.scrap_error, kScrapShare * error);
+    return partition;
+  }
+
+  static void add_cuts_around(const Cut& middle, std::vector<Cut>& cuts) {
+    for (const Cut& cut : {Cut{middle.aperture_degrees - 5, middle.smoothing_rounds},
+                           Cut{middle.aperture_degrees + 5, middle.smoothing_rounds},
+                           Cut{middle.aperture_degrees, middle.smoothing_rounds / 2},
+                           Cut{middle.aperture_degrees, std::min(99, middle.smoothing_rounds * 3 / 2 + 1)}})
+      if (cut.aperture_degrees <= 85 && std::find(cuts.begin(), cuts.end(), cut) == cuts.end()) cuts.push_back(cut);
+  }
+
+  // The cheapest at equal quality first, ties by their order.
+  std::vector<std::size_t> order_of(const std::vector<EncodingTrial>& looks) const {
+    std::vector<double> costs;
+    for (const EncodingTrial& look : looks) costs.push_back(cost_at_equal_quality(target_, look));
+    std::vector<std::size_t> order(looks.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return costs[a] < costs[b]; });
+    return order;
+  }
+
+  Result<Encoded> finished(const EncodingTrial& trial) const {
     if (!trial.stream.empty() && !std::isfinite(trial.error))
       return Error{ErrorKind::input,
                    fmt::format("nothing of the surface lies at the samples of {} to the diagonal; set "
@@ -256,24 +253,19 @@ class Search {
       return Error{ErrorKind::configuration,
                    fmt::format("{} bits per point, {:.0f} bytes, are fewer than planes and masks of {} patches take; "
                                "allow more or a wider aperture",
-                               *options_.bits_per_point, most_bytes_, surface_->planes().size())};
+                               *options_.bits_per_point, target_.most_bytes, trial.surface->planes().size())};
     if (!trial.meets_target)
       return Error{ErrorKind::configuration,
                    fmt::format("{} dB were not reached; the best was {:.2f} dB at {} samples to the diagonal; ask for "
                                "less, or set a finer --resolution",
-                               *options_.psnr_db, psnr_db(trial.error), trial.samples_per_diagonal)};
+                               *options_.psnr_db, target_.psnr_db(trial.error), trial.samples_per_diagonal)};
     const std::size_t patches = read_stream_header(trial.stream)->patch_count;
-    return Encoded{std::move(trial.stream), psnr_db(trial.error), trial.samples_per_diagonal, patches};
+    return Encoded{trial.stream, target_.psnr_db(trial.error), trial.samples_per_diagonal, patches};
   }
 
-  const SurfaceToEncode* surface_;
-  std::unique_ptr<SurfaceToEncode> repartitioned_;  // what surface_ points to, where it is not the one given
+  SharedSurface surface_;  // as it was given
   const EncoderOptions& options_;
-  double diagonal_;
-  double most_bytes_ = 0;
-  double largest_error_ = 0;
-  double last_step_ = 0;  // of the last trial that met the target
-  std::map<std::uint32_t, bool> seen_;
+  EncodingTarget target_;
 };
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "libemap/elevation/canonical_mesh.h"
 #include "libemap/elevation/gap_filling.h"
 #include "libemap/elevation/resampling.h"
+#include "libemap/surface/mesh_repair.h"
 #include "libemap/surface/mls_surface.h"
 #include "libemap/surface/point_mesh.h"
 #include "libemap/surface/point_normals.h"
@@ -24,15 +25,29 @@ using Made = std::unique_ptr<SurfaceToEncode>;
 
 constexpr double kCleanShare = 0.97;  // of a point set's points that are used by the mesh through them
 
-double root_mean_square_distance(const std::vector<Vector3d>& points, const TriangleTree& tree) {
-  if (points.empty()) return std::numeric_limits<double>::infinity();
-  std::vector<double> squared(points.size());
-  thin::parallel_ranges(points.size(), 512, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) squared[i] = tree.closest(points[i]).distance_squared;
-  });
-  double sum = 0;
-  for (const double value : squared) sum += value;
-  return std::sqrt(sum / static_cast<double>(points.size()));
+// Triangles of a surface that are sampled one by one; where it has more, as runs of neighbours.
+constexpr std::size_t kMostSingleTriangles = 1000000;
+
+constexpr std::size_t kQuickStride = 4;  // of the samples that are used for a quick look
+
+WeightedSamples every_nth(const WeightedSamples& samples, std::size_t n) {
+  WeightedSamples result;
+  for (std::size_t i = n / 2; i < samples.positions.size(); i += n) {
+    result.positions.push_back(samples.positions[i]);
+    result.areas.push_back(samples.areas[i]);
+  }
+  return result;
+}
+
+double root_mean_square_distance(const WeightedSamples& samples, const TriangleTree& tree) {
+  if (samples.positions.empty()) return std::numeric_limits<double>::infinity();
+  const std::vector<double> squared = tree.distances_squared(samples.positions);
+  double sum = 0, area = 0;
+  for (std::size_t i = 0; i < squared.size(); ++i) {
+    sum += samples.areas[i] * squared[i];
+    area += samples.areas[i];
+  }
+  return std::sqrt(sum / area);
 }
 
 // Of the points, those that some triangle uses.
@@ -57,18 +72,25 @@ Mesh mesh_standing_for(PointSet& points) {
 
 // What all partitions of a surface share: its mesh, and what decoded ones are measured by.
 struct MeasuredMesh {
-  MeasuredMesh(Mesh given, const BoundingBox& given_box, bool from_points, std::size_t samples_wanted)
+  MeasuredMesh(Mesh given, std::size_t given_points, const BoundingBox& given_box, bool from_points,
+               std::size_t samples_wanted)
       : mesh(std::move(given)),
+        point_count(given_points),
         box(given_box),
         is_points(from_points),
         tree(mesh),
-        samples(sample_surface(mesh, samples_wanted, 1)) {}
+        sample_count(samples_wanted),
+        samples(sample_every_part(mesh, samples_wanted,
+                                  mesh.triangles.size() > kMostSingleTriangles ? mesh.triangles.size() : 0, 1)),
+        quick_samples(every_nth(samples, kQuickStride)) {}
 
   Mesh mesh;
+  std::size_t point_count;  // of what was given
   BoundingBox box;
   bool is_points;
   TriangleTree tree;
-  std::vector<Vector3d> samples;
+  std::size_t sample_count;
+  WeightedSamples samples, quick_samples;
 };
 
 class PartitionedMesh : public SurfaceToEncode {
@@ -86,7 +108,7 @@ class PartitionedMesh : public SurfaceToEncode {
   }
 
   bool is_points() const override { return measured_->is_points; }
-  std::size_t point_count() const override { return measured_->mesh.positions.size(); }
+  std::size_t point_count() const override { return measured_->point_count; }
   const BoundingBox& box() const override { return measured_->box; }
   const std::vector<BasePlane>& planes() const override { return planes_; }
 
@@ -103,12 +125,16 @@ class PartitionedMesh : public SurfaceToEncode {
     return resample_mesh(measured_->mesh, partition_, planes, spacing);
   }
 
-  double error_of(const ElevationMaps& decoded) const override {
-    const Mesh mesh = closed_mesh(decoded).mesh;
+  double error_of(const ElevationMaps& decoded, bool quick) const override {
+    const auto [mesh, filling] = closed_mesh(decoded);
     if (mesh.triangles.empty()) return std::numeric_limits<double>::infinity();
-    const std::vector<Vector3d>& samples = measured_->samples;
-    const double missing = root_mean_square_distance(samples, TriangleTree(mesh));
-    return std::max(missing, root_mean_square_distance(sample_surface(mesh, samples.size(), 2), measured_->tree));
+    const double missing =
+        root_mean_square_distance(quick ? measured_->quick_samples : measured_->samples, TriangleTree(mesh));
+    // What fills gaps is where a decoded surface may be wrong in ways that are rare: looked at triangle by triangle.
+    const WeightedSamples samples =
+        quick ? sample_every_part(mesh, measured_->sample_count / kQuickStride, mesh.triangles.size(), 2)
+              : sample_every_part(mesh, measured_->sample_count, mesh.triangles.size() - filling.inserted, 2);
+    return std::max(missing, root_mean_square_distance(samples, measured_->tree));
   }
 
   Result<Made> repartitioned(const PartitionOptions& options) const override { return made(measured_, options); }
@@ -120,21 +146,25 @@ class PartitionedMesh : public SurfaceToEncode {
   std::vector<std::vector<std::uint32_t>> elements_;
 };
 
-Result<Made> partitioned(Mesh mesh, const BoundingBox& box, bool is_points, const PartitionOptions& options,
-                         std::size_t samples) {
+Result<Made> partitioned(Mesh mesh, std::size_t point_count, const BoundingBox& box, bool is_points,
+                         const PartitionOptions& options, std::size_t samples) {
   if (mesh.triangles.empty())
     return thin::Error{thin::ErrorKind::input, is_points
                                                    ? "the points lie on a line or too far apart to make a surface"
                                                    : "the mesh has no triangles to make patches of; read it as points"};
-  return PartitionedMesh::made(std::make_shared<const MeasuredMesh>(std::move(mesh), box, is_points, samples), options);
+  return PartitionedMesh::made(
+      std::make_shared<const MeasuredMesh>(std::move(mesh), point_count, box, is_points, samples), options);
 }
 
 }  // namespace
 
 Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(Mesh mesh, const PartitionOptions& options,
                                                         std::size_t samples) {
+  const std::size_t point_count = mesh.positions.size();
+  mesh = weld_vertices(mesh);
+  orient_consistently(mesh);
   const BoundingBox box = bounding_box(mesh.positions);
-  return partitioned(std::move(mesh), box, false, options, samples);
+  return partitioned(std::move(mesh), point_count, box, false, options, samples);
 }
 
 Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const PartitionOptions& options,
@@ -143,7 +173,8 @@ Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const
     return thin::Error{thin::ErrorKind::input, "fewer than three points make no surface"};
   ensure_normals(points);
   const BoundingBox box = bounding_box(points.positions);
-  return partitioned(mesh_standing_for(points), box, true, options, samples);
+  Mesh mesh = mesh_standing_for(points);
+  return partitioned(std::move(mesh), points.positions.size(), box, true, options, samples);
 }
 
 }  // namespace emap

@@ -29,9 +29,10 @@ class SurfaceToEncode {
 
   virtual ElevationMaps resample(std::span<const BasePlane> planes, double spacing) const = 0;
 
-  // E_rms of equation 3.2 between this surface and the decoded one, by samples of both;
-  // infinite where nothing was decoded.
-  virtual double error_of(const ElevationMaps& decoded) const = 0;
+  // E_rms of equation 3.2 between this surface and the decoded one, by samples of both; infinite where nothing was
+  // decoded. Every triangle of this one (up to a million) and every one that fills a gap of the other is looked at, so
+  // that small parts that are missing or wrong show; or, by a quick look, a quarter of all that.
+  virtual double error_of(const ElevationMaps& decoded, bool quick = false) const = 0;
 
   // The same surface cut otherwise.
   virtual thin::Result<std::unique_ptr<SurfaceToEncode>> repartitioned(const PartitionOptions& options) const = 0;
@@ -39,9 +40,9 @@ class SurfaceToEncode {
 
 constexpr std::size_t kSteeringSamples = 200000;
 
-// samples: on each surface, for error_of(). Errors: as partition_mesh() and partition_points(). Points get normals
-// where they have none; what is cut, sampled and measured of them is a mesh through them (surface/point_mesh.h), or
-// through their projections onto the MLS surface where they are noisy.
+// samples: at least so many on each surface, for error_of(). Errors: as partition_mesh() and partition_points(). Points
+// get normals where they have none; what is cut, sampled and measured of them is a mesh through them
+// (surface/point_mesh.h), or through their projections onto the MLS surface where they are noisy.
 thin::Result<std::unique_ptr<SurfaceToEncode>> mesh_to_encode(Mesh mesh, const PartitionOptions& options,
                                                               std::size_t samples = kSteeringSamples);
 thin::Result<std::unique_ptr<SurfaceToEncode>> points_to_encode(PointSet points, const PartitionOptions& options,

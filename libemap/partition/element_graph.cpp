@@ -1,5 +1,7 @@
 #include "libemap/partition/element_graph.h"
 
+#include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "libemap/surface/boundary_edges.h"
@@ -75,6 +77,20 @@ ElementGraph mesh_graph(const Mesh& mesh, int smoothing_rounds) {
   set_adjacency(edge_sharing_pairs(mesh), graph);
   smooth_normals(smoothing_rounds, graph);
   return graph;
+}
+
+void smooth_normals_within(int rounds, double most_degrees, ElementGraph& graph) {
+  if (rounds <= 0) return;
+  const std::vector<Eigen::Vector3d> before = graph.normals;
+  smooth_normals(rounds, graph);
+  const double most = most_degrees * std::numbers::pi / 180, least_cosine = std::cos(most);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Eigen::Vector3d aside = graph.normals[i] - before[i].dot(graph.normals[i]) * before[i];
+    if (before[i].isZero(0) || before[i].dot(graph.normals[i]) >= least_cosine) continue;
+    const double length = aside.norm();
+    graph.normals[i] =
+        length > 0 ? (least_cosine * before[i] + std::sin(most) / length * aside).normalized() : before[i];
+  }
 }
 
 }  // namespace emap

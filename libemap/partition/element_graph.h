@@ -52,4 +52,7 @@ void set_adjacency(std::span<const AdjacentPair> pairs, ElementGraph& graph);
 
 void smooth_normals(int rounds, ElementGraph& graph);
 
+// The same, but each stays within so many degrees of what it was.
+void smooth_normals_within(int rounds, double most_degrees, ElementGraph& graph);
+
 }  // namespace emap

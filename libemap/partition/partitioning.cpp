@@ -28,6 +28,16 @@ double mean_element_size(const ElementGraph& graph) {
   return std::sqrt(graph.total_area() / static_cast<double>(graph.size()));
 }
 
+// Rounds of smoothing that only even out noise; more of them may turn normals by what the aperture leaves to the
+// steepest slope that can still be sampled, or sharp edges would get sheer rims.
+constexpr int kRoundsAgainstNoise = 2;
+constexpr double kSteepestDegrees = 85;
+
+void smooth_further(const PartitionOptions& options, ElementGraph& graph) {
+  smooth_normals_within(options.smoothing_rounds - kRoundsAgainstNoise,
+                        std::max(kSteepestDegrees - options.aperture_degrees, 0.0), graph);
+}
+
 constexpr std::size_t kIslandElements = 64;  // unconnected parts of at most so many elements are linked
 constexpr double kIslandReach = 8;           // to what lies within so many element sizes
 
@@ -103,9 +113,10 @@ void PartitionOptions::declare(thin::OptionTable& table) {
 Result<Partition> partition_mesh(const Mesh& mesh, const PartitionOptions& options) {
   if (mesh.triangles.empty())
     return Error{ErrorKind::input, "the mesh has no triangles to make patches of; read it as points"};
-  ElementGraph graph = mesh_graph(mesh, options.smoothing_rounds);
+  ElementGraph graph = mesh_graph(mesh, std::min(options.smoothing_rounds, kRoundsAgainstNoise));
   if (!(graph.total_area() > 0))
     return Error{ErrorKind::input, "no triangle of the mesh has an area; there is no surface to make patches of"};
+  smooth_further(options, graph);
   link_islands(graph);
   const BoundingBox box = bounding_box(mesh.positions);
   const Eigen::Vector3d origin = (box.minimum + box.maximum) / 2;
@@ -119,8 +130,10 @@ Result<Partition> partition_points(const PointSet& points, const PartitionOption
     return Error{ErrorKind::input, "there are fewer than three points: they make no surface"};
   if (points.normals.size() != points.positions.size())
     return Error{ErrorKind::input, "the points have no normals; they must be found first"};
-  ElementGraph graph = point_graph(points, options.neighbour_count, options.smoothing_rounds);
+  ElementGraph graph =
+      point_graph(points, options.neighbour_count, std::min(options.smoothing_rounds, kRoundsAgainstNoise));
   if (!(graph.total_area() > 0)) return Error{ErrorKind::input, "all points lie at one place: they make no surface"};
+  smooth_further(options, graph);
   link_islands(graph);
   const BoundingBox box = bounding_box(points.positions);
   // Tangent discs of neighbouring points meet at different heights: by their size where the surface is rough.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <set>
 
@@ -83,6 +85,23 @@ TEST(Islands, AreLinkedToWhatIsNear) {
   add_links(links, graph);
   EXPECT_EQ(graph.neighbours(links[0].first).size(), 1U);
   EXPECT_TRUE(island_links(graph, 5, 8).empty());
+}
+
+TEST(ElementGraph, SmoothedNormalsStayAsNearAsTheyAreTold) {
+  const ElementGraph before = mesh_graph(test::torus(10), 0);
+  ElementGraph free = before, held = before;
+  smooth_normals(30, free);
+  constexpr double kMost_degrees = 12;
+  smooth_normals_within(30, kMost_degrees, held);
+  const double least_cosine = std::cos(kMost_degrees * M_PI / 180);
+  double least_free = 1, least_held = 1;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    EXPECT_NEAR(held.normals[i].norm(), 1, 1e-12);
+    least_free = std::min(least_free, before.normals[i].dot(free.normals[i]));
+    least_held = std::min(least_held, before.normals[i].dot(held.normals[i]));
+  }
+  EXPECT_LT(least_free, least_cosine);
+  EXPECT_NEAR(least_held, least_cosine, 1e-9);
 }
 
 }  // namespace
