@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libemap/coding/mask_choice.h"
 #include "libemap/elevation/base_plane.h"
 #include "libemap/elevation/canonical_mesh.h"
 #include "libemap/elevation/gap_filling.h"
@@ -100,7 +101,9 @@ class PartitionedMesh : public SurfaceToEncode {
   }
 
   ElevationMaps resample(std::span<const BasePlane> planes, double spacing) const override {
-    return resample_mesh(measured_->mesh, partition_, planes, spacing);
+    ElevationMaps maps = resample_mesh(measured_->mesh, partition_, planes, spacing);
+    choose_cheaper_masks(measured_->mesh, partition_, measured_->tree, maps);
+    return maps;
   }
 
   double error_of(const ElevationMaps& decoded) const override {
