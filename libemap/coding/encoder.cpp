@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "libemap/coding/stream.h"
+#include "libemap/elevation/map_grid.h"
 #include "libthin/foundation/parallel.h"
 
 namespace emap {
@@ -21,7 +22,9 @@ using thin::Result;
 
 constexpr std::uint32_t kFewestSamples = 16;
 constexpr std::uint32_t kMostSamples = 6000;
-constexpr double kClose = 0.985;             // of a wanted size or error: near enough
+constexpr std::int32_t kRoom = 6;     // samples in front of a patch, into which its seams may move
+constexpr std::uint32_t kMargin = 1;  // samples around each map; decides which of them interpolation leaves as they are
+constexpr double kClose = 0.985;      // of a wanted size or error: near enough
 constexpr double kResolutionRatio = 1.2599;  // between resolutions that are tried: the cube root of two
 
 constexpr double kCoarsestError = 1e-3;  // in diagonals, that partitions are made for
@@ -53,6 +56,7 @@ class Search {
   Result<Encoded> run() {
     Trial best = at(options_.samples_per_diagonal.value_or(first_guess()));
     if (options_.may_repartition) best = with_best_partition(std::move(best));
+    best = with_best_seams(std::move(best));
     if (options_.samples_per_diagonal) return finished(std::move(best));
     // Work is bounded by the size of the model, not by the clock: the same model gives the same bytes everywhere.
     const auto resolutions =
@@ -99,6 +103,14 @@ class Search {
       }
     }
     return best;
+  }
+
+  // Smooth seams or those of the partition, whichever do better at this resolution.
+  Trial with_best_seams(Trial best) {
+    smooth_seams_ = false;
+    Trial trial = at(best.samples_per_diagonal);
+    smooth_seams_ = !is_better(trial, best);
+    return better(std::move(best), std::move(trial));
   }
 
   // error: in diagonals. Normals are smoothed more, and what lies nearer than the error counts as one sheet.
@@ -150,12 +162,20 @@ class Search {
     thin::parallel_ranges(coded.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         coded[i] = quantise_plane(surface_->planes()[i], surface_->positions_of(i), frame);
+        coded[i].origin_u -= kRoom;
+        coded[i].origin_v -= kRoom;
         planes[i] = base_plane_of(coded[i], frame);
       }
     });
-    ElevationMaps maps = surface_->resample(planes, frame.spacing());
+    ElevationMaps maps = surface_->resample(planes, frame.spacing(), smooth_seams_);
     maps.diagonal = frame.box.diagonal();
     drop_empty(coded, maps);
+    for (std::size_t i = 0; i < coded.size(); ++i) {
+      const ShiftedOrigin shifted = set_margin(kMargin, maps.patches[i]);
+      coded[i].origin_u += shifted.columns;
+      coded[i].origin_v += shifted.rows;
+      maps.patches[i].plane = base_plane_of(coded[i], frame);
+    }
     return {samples_per_diagonal, StreamWriter(*options_.coder, frame, std::move(coded), std::move(maps),
                                                surface_->is_points(), options_.distribution)};
   }
@@ -272,6 +292,7 @@ class Search {
   double diagonal_;
   double most_bytes_ = 0;
   double largest_error_ = 0;
+  bool smooth_seams_ = true;
   double last_step_ = 0;  // of the last trial that met the target
   std::map<std::uint32_t, bool> seen_;
 };

@@ -6,6 +6,7 @@
 #include "libemap/elevation/cube_hash.h"
 #include "libemap/elevation/gap_filling.h"
 #include "libemap/elevation/map_grid.h"
+#include "libemap/elevation/seam_smoothing.h"
 #include "libthin/foundation/parallel.h"
 
 namespace emap {
@@ -264,21 +265,6 @@ class MaskChoice {
   std::vector<LostPatch> lost_;
 };
 
-// Vertices at which triangles of different patches meet.
-std::vector<Vector3d> vertices_on_seams(const Mesh& mesh, const Partition& partition) {
-  constexpr std::uint32_t kNone = 0xFFFFFFFF, kSeam = kNone - 1;
-  std::vector<std::uint32_t> patch_of(mesh.positions.size(), kNone);
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (const std::uint32_t vertex : mesh.triangles[i]) {
-      std::uint32_t& patch = patch_of[vertex];
-      patch = patch == kNone || patch == partition.patch_of[i] ? partition.patch_of[i] : kSeam;
-    }
-  std::vector<Vector3d> seams;
-  for (std::size_t i = 0; i < patch_of.size(); ++i)
-    if (patch_of[i] == kSeam) seams.push_back(mesh.positions[i]);
-  return seams;
-}
-
 }  // namespace
 
 void choose_cheaper_masks(const Mesh& mesh, const Partition& partition, const TriangleTree& tree, ElevationMaps& maps,
@@ -292,7 +278,7 @@ void choose_cheaper_masks(const Mesh& mesh, const Partition& partition, const Tr
       free_of_patch[i] = free_samples(mesh, triangles[i], tree, patch, maps.spacing, options.freedom);
     }
   });
-  MaskChoice choice(maps, std::move(free_of_patch), vertices_on_seams(mesh, partition), options);
+  MaskChoice choice(maps, std::move(free_of_patch), vertices_on_seams(mesh, partition.patch_of), options);
   choice.run();
   choice.repair();
   ElevationMaps chosen = choice.maps();

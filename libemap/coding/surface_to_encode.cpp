@@ -9,6 +9,7 @@
 #include "libemap/elevation/canonical_mesh.h"
 #include "libemap/elevation/gap_filling.h"
 #include "libemap/elevation/resampling.h"
+#include "libemap/elevation/seam_smoothing.h"
 #include "libemap/surface/mls_surface.h"
 #include "libemap/surface/point_mesh.h"
 #include "libemap/surface/point_normals.h"
@@ -63,12 +64,14 @@ struct MeasuredMesh {
         box(given_box),
         is_points(from_points),
         tree(mesh),
+        neighbours(triangle_neighbours(mesh)),
         samples(sample_surface(mesh, samples_wanted, 1)) {}
 
   Mesh mesh;
   BoundingBox box;
   bool is_points;
   TriangleTree tree;
+  TriangleNeighbours neighbours;
   std::vector<Vector3d> samples;
 };
 
@@ -100,10 +103,12 @@ class PartitionedMesh : public SurfaceToEncode {
     return positions;
   }
 
-  ElevationMaps resample(std::span<const BasePlane> planes, double spacing) const override {
-    ElevationMaps maps = resample_mesh(measured_->mesh, partition_, planes, spacing);
-    choose_cheaper_masks(measured_->mesh, partition_, measured_->tree, maps);
-    return maps;
+  ElevationMaps resample(std::span<const BasePlane> planes, double spacing, bool smooth) const override {
+    const Mesh& mesh = measured_->mesh;
+    SmoothlyCut cut = smooth ? resample_with_smooth_seams(mesh, measured_->neighbours, partition_, planes, spacing)
+                             : SmoothlyCut{partition_, resample_mesh(mesh, partition_, planes, spacing)};
+    choose_cheaper_masks(mesh, cut.partition, measured_->tree, cut.maps);
+    return std::move(cut.maps);
   }
 
   double error_of(const ElevationMaps& decoded) const override {
