@@ -30,6 +30,7 @@ constexpr double kResolutionRatio = 1.2599;  // between resolutions that are tri
 constexpr double kCoarsestError = 1e-3;  // in diagonals, that partitions are made for
 // Beyond which other partitions, which take seconds each, are tried only where the first does not lead to the target.
 constexpr std::size_t kManyPoints = 200000;
+constexpr std::uint32_t kManySamples = 600;  // to the diagonal
 
 // A surface sampled at one resolution, ready to be written.
 struct Resolution {
@@ -107,10 +108,18 @@ class Search {
 
   // Smooth seams or those of the partition, whichever do better at this resolution.
   Trial with_best_seams(Trial best) {
+    if (mask_effort(best.samples_per_diagonal) == MaskEffort::none) return best;
     smooth_seams_ = false;
     Trial trial = at(best.samples_per_diagonal);
     smooth_seams_ = !is_better(trial, best);
     return better(std::move(best), std::move(trial));
+  }
+
+  // On large models with fine maps, looking for what gap filling misses takes longer than all the rest, and masks are a
+  // small share of the bits.
+  MaskEffort mask_effort(std::uint32_t samples_per_diagonal) const {
+    if (surface_->point_count() > kManyPoints && samples_per_diagonal > kManySamples) return MaskEffort::none;
+    return smooth_seams_ ? MaskEffort::seams : MaskEffort::boundaries;
   }
 
   // error: in diagonals. Normals are smoothed more, and what lies nearer than the error counts as one sheet.
@@ -167,7 +176,7 @@ class Search {
         planes[i] = base_plane_of(coded[i], frame);
       }
     });
-    ElevationMaps maps = surface_->resample(planes, frame.spacing(), smooth_seams_);
+    ElevationMaps maps = surface_->resample(planes, frame.spacing(), mask_effort(samples_per_diagonal));
     maps.diagonal = frame.box.diagonal();
     drop_empty(coded, maps);
     for (std::size_t i = 0; i < coded.size(); ++i) {

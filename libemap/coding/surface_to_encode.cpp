@@ -103,10 +103,12 @@ class PartitionedMesh : public SurfaceToEncode {
     return positions;
   }
 
-  ElevationMaps resample(std::span<const BasePlane> planes, double spacing, bool smooth) const override {
+  ElevationMaps resample(std::span<const BasePlane> planes, double spacing, MaskEffort effort) const override {
     const Mesh& mesh = measured_->mesh;
-    SmoothlyCut cut = smooth ? resample_with_smooth_seams(mesh, measured_->neighbours, partition_, planes, spacing)
-                             : SmoothlyCut{partition_, resample_mesh(mesh, partition_, planes, spacing)};
+    if (effort == MaskEffort::none) return resample_mesh(mesh, partition_, planes, spacing);
+    SmoothlyCut cut = effort == MaskEffort::seams
+                          ? resample_with_smooth_seams(mesh, measured_->neighbours, partition_, planes, spacing)
+                          : SmoothlyCut{partition_, resample_mesh(mesh, partition_, planes, spacing)};
     choose_cheaper_masks(mesh, cut.partition, measured_->tree, cut.maps);
     return std::move(cut.maps);
   }
