@@ -64,6 +64,7 @@ class Search {
     // A rate that is not met wants fewer patches, a quality that is not met finer maps.
     if (target_.is_quality() && !options_.samples_per_diagonal) best = climbed(std::move(best));
     if (options_.may_repartition) best = with_best_partition(std::move(best));
+    best = with_best_seams(std::move(best));
     if (options_.samples_per_diagonal) return finished(best);
     best = climbed(std::move(best));
     if (!best.meets_target) return finished(best);
@@ -186,6 +187,16 @@ class Search {
       best = better(std::move(best), std::move(trial));
     }
     return best;
+  }
+
+  // Smooth seams or those of the partition, whichever do better at this resolution; for all tries from here on.
+  EncodingTrial with_best_seams(EncodingTrial best) {
+    if (!best.meets_target || mask_effort(target_, *best.surface, best.samples_per_diagonal) == MaskEffort::none)
+      return best;
+    target_.may_smooth_seams = false;
+    EncodingTrial trial = at(best.surface, best.samples_per_diagonal, best.step);
+    target_.may_smooth_seams = !is_better(target_, trial, best);
+    return better(std::move(best), std::move(trial));
   }
 
   // Where a rate is not met, errors are as large as they may be.

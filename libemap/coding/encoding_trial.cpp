@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "libemap/coding/stream.h"
+#include "libemap/elevation/map_grid.h"
 #include "libthin/foundation/parallel.h"
 
 namespace emap {
@@ -13,8 +14,12 @@ namespace {
 
 using thin::Result;
 
-constexpr double kClose = 0.985;   // of a wanted size or error: near enough
-constexpr double kFlattest = 0.2;  // of the error against the step, in logarithms: below, the grid is too coarse
+constexpr std::size_t kManyPoints = 200000;
+constexpr std::uint32_t kManySamples = 600;  // to the diagonal, of a model of many points
+constexpr std::int32_t kRoom = 6;            // samples in front of a patch, into which its seams may move
+constexpr std::uint32_t kMargin = 1;  // samples around each map; decides which of them interpolation leaves as they are
+constexpr double kClose = 0.985;      // of a wanted size or error: near enough
+constexpr double kFlattest = 0.2;     // of the error against the step, in logarithms: below, the grid is too coarse
 constexpr double kLogBytesPer_dB = 0.112;  // of usual models and rates
 
 // Patches between whose samples everything falls.
@@ -41,12 +46,20 @@ StreamWriter writer_of(const EncodingTarget& target, const SurfaceToEncode& surf
   thin::parallel_ranges(coded.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       coded[i] = quantise_plane(surface.planes()[i], surface.positions_of(i), frame);
+      coded[i].origin_u -= kRoom;
+      coded[i].origin_v -= kRoom;
       planes[i] = base_plane_of(coded[i], frame);
     }
   });
-  ElevationMaps maps = surface.resample(planes, frame.spacing());
+  ElevationMaps maps = surface.resample(planes, frame.spacing(), mask_effort(target, surface, samples_per_diagonal));
   maps.diagonal = frame.box.diagonal();
   drop_empty(coded, maps);
+  for (std::size_t i = 0; i < coded.size(); ++i) {
+    const ShiftedOrigin shifted = set_margin(kMargin, maps.patches[i]);
+    coded[i].origin_u += shifted.columns;
+    coded[i].origin_v += shifted.rows;
+    maps.patches[i].plane = base_plane_of(coded[i], frame);
+  }
   return StreamWriter(*target.coder, frame, std::move(coded), std::move(maps), surface.is_points(),
                       target.distribution);
 }
@@ -119,6 +132,12 @@ EncodingTrial to_quality(const EncodingTarget& target, StreamWriter& writer, Enc
 }
 
 }  // namespace
+
+MaskEffort mask_effort(const EncodingTarget& target, const SurfaceToEncode& surface,
+                       std::uint32_t samples_per_diagonal) {
+  if (surface.point_count() > kManyPoints && samples_per_diagonal > kManySamples) return MaskEffort::none;
+  return target.may_smooth_seams ? MaskEffort::seams : MaskEffort::boundaries;
+}
 
 double EncodingTarget::psnr_db(double error) const {
   return 20 * std::log10(diagonal / error);

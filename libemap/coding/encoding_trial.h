@@ -20,10 +20,16 @@ struct EncodingTarget {
   double largest_error = 0;  // model units; 0: a rate is wanted
   const ElevationCoder* coder = nullptr;
   BitDistribution distribution = BitDistribution::surface;
+  bool may_smooth_seams = true;
 
   bool is_quality() const { return largest_error > 0; }
   double psnr_db(double error) const;
 };
+
+// How much a try does for cheap masks. On large models with fine maps nothing: looking for what gap filling misses
+// takes longer than all the rest there, and masks are a small share of the bits.
+MaskEffort mask_effort(const EncodingTarget& target, const SurfaceToEncode& surface,
+                       std::uint32_t samples_per_diagonal);
 
 struct EncodingTrial {
   std::shared_ptr<const SurfaceToEncode> surface;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libemap/coding/mask_choice.h"
 #include "libemap/elevation/base_plane.h"
 #include "libemap/elevation/canonical_mesh.h"
 #include "libemap/elevation/gap_filling.h"
@@ -79,6 +80,7 @@ struct MeasuredMesh {
         box(given_box),
         is_points(from_points),
         tree(mesh),
+        neighbours(triangle_neighbours(mesh)),
         sample_count(samples_wanted),
         samples(sample_every_part(mesh, samples_wanted,
                                   mesh.triangles.size() > kMostSingleTriangles ? mesh.triangles.size() : 0, 1)),
@@ -89,6 +91,7 @@ struct MeasuredMesh {
   BoundingBox box;
   bool is_points;
   TriangleTree tree;
+  TriangleNeighbours neighbours;
   std::size_t sample_count;
   WeightedSamples samples, quick_samples;
 };
@@ -121,8 +124,14 @@ class PartitionedMesh : public SurfaceToEncode {
     return positions;
   }
 
-  ElevationMaps resample(std::span<const BasePlane> planes, double spacing) const override {
-    return resample_mesh(measured_->mesh, partition_, planes, spacing);
+  ElevationMaps resample(std::span<const BasePlane> planes, double spacing, MaskEffort effort) const override {
+    const Mesh& mesh = measured_->mesh;
+    if (effort == MaskEffort::none) return resample_mesh(mesh, partition_, planes, spacing);
+    SmoothlyCut cut = effort == MaskEffort::seams
+                          ? resample_with_smooth_seams(mesh, measured_->neighbours, partition_, planes, spacing)
+                          : SmoothlyCut{partition_, resample_mesh(mesh, partition_, planes, spacing)};
+    choose_cheaper_masks(mesh, cut.partition, measured_->tree, cut.maps);
+    return std::move(cut.maps);
   }
 
   double error_of(const ElevationMaps& decoded, bool quick) const override {

@@ -15,6 +15,13 @@
 
 namespace emap {
 
+// How much is done for masks that cost little.
+enum class MaskEffort {
+  none,
+  boundaries,  // coding/mask_choice.h
+  seams        // elevation/seam_smoothing.h as well, which is for the worse where seams lie along creases
+};
+
 class SurfaceToEncode {
  public:
   virtual ~SurfaceToEncode() = default;
@@ -27,7 +34,7 @@ class SurfaceToEncode {
   // Of the elements of a patch; a vertex of several triangles comes several times.
   virtual std::vector<Eigen::Vector3d> positions_of(std::size_t patch) const = 0;
 
-  virtual ElevationMaps resample(std::span<const BasePlane> planes, double spacing) const = 0;
+  virtual ElevationMaps resample(std::span<const BasePlane> planes, double spacing, MaskEffort effort) const = 0;
 
   // E_rms of equation 3.2 between this surface and the decoded one, by samples of both; infinite where nothing was
   // decoded. Every triangle of this one (up to a million) and every one that fills a gap of the other is looked at, so

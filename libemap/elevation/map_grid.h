@@ -17,4 +17,11 @@ ElevationPatch empty_patch(const BasePlane& plane, double last_u, double last_v)
 // Rows and columns at the far ends that hold no sample go.
 void crop(ElevationPatch& patch);
 
+// Just so many rows and columns without samples all around. The plane's origin stays, for the caller to move by as many
+// samples as this returns.
+struct ShiftedOrigin {
+  std::int32_t columns, rows;
+};
+ShiftedOrigin set_margin(std::uint32_t margin, ElevationPatch& patch);
+
 }  // namespace emap
