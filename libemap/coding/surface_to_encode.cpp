@@ -5,10 +5,10 @@
 #include <limits>
 
 #include "libemap/coding/mask_choice.h"
-#include "libemap/elevation/base_plane.h"
 #include "libemap/elevation/canonical_mesh.h"
 #include "libemap/elevation/gap_filling.h"
 #include "libemap/elevation/resampling.h"
+#include "libemap/elevation/seam_smoothing.h"
 #include "libemap/surface/mesh_repair.h"
 #include "libemap/surface/mls_surface.h"
 #include "libemap/surface/point_mesh.h"
