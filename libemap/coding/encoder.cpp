@@ -82,7 +82,7 @@ class Search {
     constexpr double kAreaOfDiagonalSquared = 0.8;  // of usual models
     const double finer = (options_.coder->leaves_finest_band_out ? 1 : 0.8) * (surface_->is_points() ? 1.3 : 1);
     if (options_.psnr_db) return scaled(1, finer * 520 * std::pow(10.0, (*options_.psnr_db - 80) / 45));
-    return scaled(1, finer * 1.25 * std::sqrt(8 * target_.most_bytes / kAreaOfDiagonalSquared));
+    return scaled(1, finer * 1.5 * std::sqrt(8 * target_.most_bytes / kAreaOfDiagonalSquared));
   }
 
   EncodingTrial at(const SharedSurface& surface, std::uint32_t samples_per_diagonal, double first_step) const {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "libemap/coding/mask_choice.h"
+#include "libemap/elevation/base_plane.h"
 #include "libemap/elevation/canonical_mesh.h"
 #include "libemap/elevation/gap_filling.h"
 #include "libemap/elevation/resampling.h"
