@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -91,7 +92,7 @@ class DrawnMaps : public DrawnSurface {
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, is_mesh ? strips_.get() : splats_.get());
     program.set("spacing", spacing_);
     program.set("keeps_own_normal", seam_count_ == 0 ? 1 : 0);
-    for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    for (const std::size_t i : from_front_to_back(view)) {
       const MapTile& tile = tiles_[i];
       const std::uint32_t count = is_mesh ? tile.strip_count : tile.splat_count;
       if (count == 0) continue;
@@ -101,6 +102,17 @@ class DrawnMaps : public DrawnSurface {
       glDrawElements(is_mesh ? GL_TRIANGLE_STRIP : GL_POINTS, static_cast<GLsizei>(count), GL_UNSIGNED_SHORT,
                      reinterpret_cast<const void*>(sizeof(std::uint16_t) * first));
     }
+  }
+
+  // So that what is hidden is mostly found to be before it is shaded.
+  std::vector<std::size_t> from_front_to_back(const View& view) const {
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t i = 0; i < tiles_.size(); ++i)
+      order.emplace_back((tiles_[i].middle - view.eye_in_model).squaredNorm(), i);
+    std::sort(order.begin(), order.end());
+    std::vector<std::size_t> tiles;
+    for (const auto& [distance, tile] : order) tiles.push_back(tile);
+    return tiles;
   }
 
   static void set_tile(const GlProgram& program, const MapTile& tile, Pass pass, const View& view) {
@@ -165,7 +177,9 @@ class DrawnMaps : public DrawnSurface {
     (*program)->set("patch_colour", Eigen::Vector3d(0.8, 0.8, 0.8));
     glBindVertexArray(seam_array_.get());
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, seam_triangles_.get());
+    if (view.one_sided) glEnable(GL_CULL_FACE);
     glDrawElements(GL_TRIANGLES, seam_count_, seam_type_, nullptr);
+    glDisable(GL_CULL_FACE);
     return {};
   }
 

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "libemap/elevation/canonical_mesh.h"
+#include "libemap/rendering/shaders.h"
 #include "libemap/rendering/smooth_normals.h"
 #include "libemap/rendering/triangle_strips.h"
 
@@ -132,6 +133,7 @@ class GeometryWriter {
     const ElevationPatch& map = patch.map;
     tile.first_row = static_cast<std::uint32_t>(geometry_.rows.size());
     tile.row_count = region.last_row - region.first_row;
+    Eigen::Vector4d sum = Eigen::Vector4d::Zero();
     for (std::uint32_t row = region.first_row; row < region.last_row; ++row) {
       const std::uint8_t* mask = map.mask.data() + std::size_t{row} * map.columns;
       std::uint32_t first = region.first_column, last = region.last_column;
@@ -144,9 +146,12 @@ class GeometryWriter {
       for (std::uint32_t column = first; column < last; ++column) {
         const std::size_t place = std::size_t{row} * map.columns + column;
         geometry_.elevations.push_back(mask[column] ? code_of(map.elevation[place]) : MapGeometry::kNothing);
+        if (mask[column])
+          sum += Eigen::Vector4d(column - region.first_column, row - region.first_row, geometry_.elevations.back(), 1);
         geometry_.normals.push_back(polar_normal(patch.normal[place].cast<double>()));
       }
     }
+    tile.middle = (tile.model_from_grid * sum).head<3>() / std::max(sum.w(), 1.0);
   }
 
   std::uint16_t code_of(double elevation) const {
@@ -186,26 +191,26 @@ class GeometryWriter {
     for (std::size_t t = first_inserted; t < triangles.size(); ++t) add_seam_triangle(triangles[t]);
     geometry_.triangles += closed.filling.inserted;
     if (use_ == MapUse::interpolated_splats)
-      for (const std::size_t t : between_discs(closed.mesh, first_inserted)) add_seam_triangle(triangles[t]);
+      for (const std::size_t t : between_squares(closed.mesh, first_inserted)) add_seam_triangle(triangles[t]);
   }
 
-  // Triangles with a side longer than the discs (5.1) at its ends reach: on steep slopes whose normals do not show it.
-  std::vector<std::size_t> between_discs(const Mesh& mesh, std::size_t count) const {
+  // Triangles of the patches that leave a corner's tangent plane half-way to the next corner by more than squares
+  // overlap: from the side they would be seen between the squares.
+  std::vector<std::size_t> between_squares(const Mesh& mesh, std::size_t count) const {
+    constexpr double kApart = 0.12;  // samples' spacings
     const std::vector<Eigen::Vector3d> normals = smooth_normals(mesh);
     const std::vector<std::uint32_t> patches = patches_of_samples(maps_);
-    const auto radius = [&](std::uint32_t vertex) {
-      const double cosine = normals[vertex].dot(maps_.patches[patches[vertex]].plane.normal);
-      return std::sqrt(0.5) * maps_.spacing / (0.1 + 0.9 * std::max(cosine, 0.0));
+    const auto leaves = [&](std::uint32_t from, std::uint32_t to) {
+      const Eigen::Vector3d& up = maps_.patches[patches[from]].plane.normal;
+      const Eigen::Vector3d normal =
+          (normals[from] + std::max(kGentlestCosine - normals[from].dot(up), 0.0) * up).normalized();
+      return std::abs(normal.dot(mesh.positions[to] - mesh.positions[from])) > 2 * kApart * maps_.spacing;
     };
     std::vector<std::size_t> between;
     for (std::size_t t = 0; t < count; ++t) {
-      const auto& triangle = mesh.triangles[t];
-      bool is_long = false;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const std::uint32_t from = triangle[i], to = triangle[(i + 1) % 3];
-        is_long |= (mesh.positions[from] - mesh.positions[to]).norm() > 1.05 * (radius(from) + radius(to));
-      }
-      if (is_long) between.push_back(t);
+      const auto& [a, b, c] = mesh.triangles[t];
+      if (leaves(a, b) || leaves(b, a) || leaves(b, c) || leaves(c, b) || leaves(a, c) || leaves(c, a))
+        between.push_back(t);
     }
     return between;
   }

@@ -29,6 +29,7 @@ struct MapTile {
   // (column, row, elevation code, 1) -> the model, centred and scaled to a diagonal of 1.
   Eigen::Matrix4d model_from_grid = Eigen::Matrix4d::Identity();
   Eigen::Matrix3d model_from_plane = Eigen::Matrix3d::Identity();  // for normals: its columns are the plane's axes
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();                // of its samples, in the model so scaled
   std::uint32_t first_row = 0;                                     // in MapGeometry::rows
   std::uint32_t row_count = 0;
   std::uint32_t first_strip = 0, strip_count = 0;  // indices in MapGeometry::strips
