@@ -91,6 +91,7 @@ void Renderer::set_picture(const Image& picture) {
 
 Result<void> Renderer::draw(const Camera& camera, const DrawOptions& options) {
   View view(camera, frame_->width(), frame_->height());
+  view.widen_clipping(frame_->pixels_beyond());
   view.one_sided = one_sided_;
   view.radius_factor = options.radius_factor;
   view.behind = 1.5 * spacing_;
