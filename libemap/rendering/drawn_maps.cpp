@@ -11,6 +11,7 @@ namespace emap {
 namespace {
 
 constexpr std::size_t kTexelsOfFrame = 12;  // as the shaders count them
+constexpr double kWideSplats = 1.5;         // times the radius
 
 Stage stage_of(Pass pass) {
   switch (pass) {
@@ -98,10 +99,22 @@ class DrawnMaps : public DrawnSurface {
       if (count == 0) continue;
       set_tile(program, tile, pass, view);
       if (pass == Pass::identity) program.set("tile", static_cast<int>(i));
-      const std::size_t first = is_mesh ? tile.first_strip : tile.first_splat;
-      glDrawElements(is_mesh ? GL_TRIANGLE_STRIP : GL_POINTS, static_cast<GLsizei>(count), GL_UNSIGNED_SHORT,
-                     reinterpret_cast<const void*>(sizeof(std::uint16_t) * first));
+      if (is_mesh) {
+        draw_indices(GL_TRIANGLE_STRIP, tile.first_strip, count);
+        continue;
+      }
+      const std::uint32_t ordinary = count - tile.wide_count;
+      program.set("widening", 1.0);
+      draw_indices(GL_POINTS, tile.first_splat, ordinary);
+      if (tile.wide_count == 0) continue;
+      program.set("widening", kWideSplats);
+      draw_indices(GL_POINTS, tile.first_splat + ordinary, tile.wide_count);
     }
+  }
+
+  static void draw_indices(GLenum what, std::size_t first, std::uint32_t count) {
+    glDrawElements(what, static_cast<GLsizei>(count), GL_UNSIGNED_SHORT,
+                   reinterpret_cast<const void*>(sizeof(std::uint16_t) * first));
   }
 
   // So that what is hidden is mostly found to be before it is shaded.

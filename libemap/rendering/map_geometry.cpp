@@ -27,6 +27,32 @@ int rims_of(MapUse use) {
   return has_seams(use) ? 0 : use == MapUse::splats ? 1 : 2;
 }
 
+// Of the samples, no steeper over their base planes than squares are drawn.
+class TangentPlanes {
+ public:
+  TangentPlanes(const ElevationMaps& maps, const Mesh& mesh)
+      : mesh_(mesh), most_apart_(2 * 0.12 * maps.spacing), normals_(smooth_normals(mesh)) {
+    const std::vector<std::uint32_t> patches = patches_of_samples(maps);
+    for (std::size_t i = 0; i < normals_.size(); ++i) {
+      const Eigen::Vector3d& up = maps.patches[patches[i]].plane.normal;
+      normals_[i] = (normals_[i] + std::max(kGentlestCosine - normals_[i].dot(up), 0.0) * up).normalized();
+    }
+  }
+
+  bool are_left_by(const std::array<std::uint32_t, 3>& triangle) const {
+    const auto leaves = [&](std::uint32_t from, std::uint32_t to) {
+      return std::abs(normals_[from].dot(mesh_.positions[to] - mesh_.positions[from])) > most_apart_;
+    };
+    const auto& [a, b, c] = triangle;
+    return leaves(a, b) || leaves(b, a) || leaves(b, c) || leaves(c, b) || leaves(a, c) || leaves(c, a);
+  }
+
+ private:
+  const Mesh& mesh_;
+  double most_apart_;
+  std::vector<Eigen::Vector3d> normals_;
+};
+
 class GeometryWriter {
  public:
   GeometryWriter(const ElevationMaps& maps, const BoundingBox& box, MapUse use)
@@ -40,6 +66,7 @@ class GeometryWriter {
     geometry_.open_edges = closed.filling.edges_left;
     geometry_.edges = closed.mesh.triangles.size() * 3 / 2;
     if (has_seams(use_)) vertex_places_.reserve(closed.mesh.positions.size());
+    if (use_ == MapUse::splats || use_ == MapUse::overlapping_interpolated_splats) find_wide_splats(closed);
     for (std::uint32_t patch = 0; patch < patches.size(); ++patch) add_patch(patch, patches[patch]);
     if (has_seams(use_)) add_seams(closed);
     return std::move(geometry_);
@@ -57,6 +84,11 @@ class GeometryWriter {
     const ElevationPatch& map = patch.map;
     if (map.columns == 0 || map.rows == 0) return;
     quantise(map);
+    if (!is_wide_.empty()) {
+      wide_places_.assign(map.mask.size(), 0);
+      for (std::size_t place = 0; place < map.mask.size(); ++place)
+        if (patch.ring[place] == 1) wide_places_[place] = is_wide_[next_vertex_++];
+    }
     const std::size_t first_tile = geometry_.tiles.size();
     const auto tiles_along = [](std::uint32_t samples) {
       return samples <= kMostSide ? 1U : (samples - 1 + kTileSquares - 1) / kTileSquares;
@@ -106,7 +138,7 @@ class GeometryWriter {
       const double steepest_slope = std::tan(CanonicalOptions().steepest_degrees * std::numbers::pi / 180);
       append_strip(patch.map, maps_.spacing, steepest_slope, region.squares, place, geometry_.strips);
     } else {
-      list_splats(patch, region, place);
+      tile.wide_count = list_splats(patch, region, place);
     }
     tile.strip_count = static_cast<std::uint32_t>(geometry_.strips.size()) - tile.first_strip;
     tile.splat_count = static_cast<std::uint32_t>(geometry_.splats.size()) - tile.first_splat;
@@ -159,17 +191,22 @@ class GeometryWriter {
         std::clamp(std::lround((elevation - lowest_) / step_), 0L, MapGeometry::kNothing - 1L));
   }
 
+  // Returns how many are wide.
   template <class Place>
-  void list_splats(const DressedPatch& patch, const Region& region, const Place& place) {
+  std::uint32_t list_splats(const DressedPatch& patch, const Region& region, const Place& place) {
     const ElevationPatch& map = patch.map;
     const SquareRange& squares = region.squares;
     const std::uint32_t last_column = squares.last_column + (squares.last_column + 1 == map.columns ? 1 : 0);
     const std::uint32_t last_row = squares.last_row + (squares.last_row + 1 == map.rows ? 1 : 0);
+    std::vector<std::uint16_t> wide;
     for (std::uint32_t row = squares.first_row; row < last_row; ++row)
       for (std::uint32_t column = squares.first_column; column < last_column; ++column) {
-        const std::uint8_t ring = patch.ring[std::size_t{row} * map.columns + column];
-        if (ring == 1 || ring == 2) geometry_.splats.push_back(place(row, column));
+        const std::size_t there = std::size_t{row} * map.columns + column;
+        if (patch.ring[there] != 1 && patch.ring[there] != 2) continue;
+        (!wide_places_.empty() && wide_places_[there] ? wide : geometry_.splats).push_back(place(row, column));
       }
+    geometry_.splats.insert(geometry_.splats.end(), wide.begin(), wide.end());
+    return static_cast<std::uint32_t>(wide.size());
   }
 
   // The tile and place of each sample of the map, in the order of the closed mesh's vertices.
@@ -197,22 +234,20 @@ class GeometryWriter {
   // Triangles of the patches that leave a corner's tangent plane half-way to the next corner by more than squares
   // overlap: from the side they would be seen between the squares.
   std::vector<std::size_t> between_squares(const Mesh& mesh, std::size_t count) const {
-    constexpr double kApart = 0.12;  // samples' spacings
-    const std::vector<Eigen::Vector3d> normals = smooth_normals(mesh);
-    const std::vector<std::uint32_t> patches = patches_of_samples(maps_);
-    const auto leaves = [&](std::uint32_t from, std::uint32_t to) {
-      const Eigen::Vector3d& up = maps_.patches[patches[from]].plane.normal;
-      const Eigen::Vector3d normal =
-          (normals[from] + std::max(kGentlestCosine - normals[from].dot(up), 0.0) * up).normalized();
-      return std::abs(normal.dot(mesh.positions[to] - mesh.positions[from])) > 2 * kApart * maps_.spacing;
-    };
+    const TangentPlanes planes(maps_, mesh);
     std::vector<std::size_t> between;
-    for (std::size_t t = 0; t < count; ++t) {
-      const auto& [a, b, c] = mesh.triangles[t];
-      if (leaves(a, b) || leaves(b, a) || leaves(b, c) || leaves(c, b) || leaves(a, c) || leaves(c, a))
-        between.push_back(t);
-    }
+    for (std::size_t t = 0; t < count; ++t)
+      if (planes.are_left_by(mesh.triangles[t])) between.push_back(t);
     return between;
+  }
+
+  // The corners of those triangles.
+  void find_wide_splats(const ClosedMesh& closed) {
+    const TangentPlanes planes(maps_, closed.mesh);
+    is_wide_.assign(closed.mesh.positions.size(), 0);
+    for (const auto& triangle : closed.mesh.triangles)
+      if (planes.are_left_by(triangle))
+        for (const std::uint32_t vertex : triangle) is_wide_[vertex] = 1;
   }
 
   void add_seam_triangle(const std::array<std::uint32_t, 3>& triangle) {
@@ -230,6 +265,8 @@ class GeometryWriter {
   Eigen::Vector3d centre_;
   double lowest_ = 0, step_ = 1;  // of the patch's elevation codes
   std::vector<std::array<std::uint16_t, 2>> vertex_places_;
+  std::vector<std::uint8_t> is_wide_, wide_places_;  // by vertex of the closed mesh; by place of the patch at hand
+  std::size_t next_vertex_ = 0;
   std::unordered_map<std::uint32_t, std::uint32_t> seam_index_;  // in seam_vertices, by vertex of the closed mesh
   MapGeometry geometry_;
 };

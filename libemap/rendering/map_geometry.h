@@ -33,7 +33,9 @@ struct MapTile {
   std::uint32_t first_row = 0;                                     // in MapGeometry::rows
   std::uint32_t row_count = 0;
   std::uint32_t first_strip = 0, strip_count = 0;  // indices in MapGeometry::strips
-  std::uint32_t first_splat = 0, splat_count = 0;  // indices in MapGeometry::splats
+  // Indices in MapGeometry::splats; the last `wide_count` of them need a radius wider than (5.1), for triangles around
+  // them leave their discs.
+  std::uint32_t first_splat = 0, splat_count = 0, wide_count = 0;
 };
 
 // Samples of a row are stored from its first to its last one: the sample at `column` at offset + column.

@@ -142,8 +142,10 @@ void place_splat(vec3 p, vec3 n, float radius) {
 }
 )";
 
-// Radii by (5.1).
+// Radii by (5.1), with which the discs of a flat map just touch in the middle of its squares: so a little wider, the
+// more so where they are seen from the side, and as much more as the list of splats asks for.
 constexpr const char* kMapSplatVertex = R"(
+uniform float widening;
 uniform int first_row;
 uniform mat4 eye_from_grid;
 uniform mat3 eye_from_plane;
@@ -153,7 +155,10 @@ void main() {
   int sample_index = texelFetch(rows, first_row + place.y).x + place.x;
   vec3 over_plane = normal_of(texelFetch(normals, sample_index).xy);
   vec3 p = (eye_from_grid * vec4(place, float(texelFetch(elevations, sample_index).x), 1.0)).xyz;
-  place_splat(p, eye_from_plane * over_plane, 0.70710678 * spacing / (0.1 + 0.9 * max(over_plane.z, 0.0)));
+  vec3 n = eye_from_plane * over_plane;
+  float facing = -dot(n, p) * inversesqrt(dot(p, p));
+  float wider = widening * (1.01 + 0.02 / max(facing, 0.08));
+  place_splat(p, n, wider * 0.70710678 * spacing / (0.1 + 0.9 * max(over_plane.z, 0.0)));
 }
 )";
 
@@ -167,6 +172,7 @@ uniform float pixels;
 uniform vec2 picture_centre;
 uniform float largest_square;
 uniform bool one_sided;
+uniform float widening;
 uniform int first_row;
 uniform int tile;
 uniform mat4 eye_from_grid;
@@ -180,7 +186,7 @@ void main() {
   vec3 over_plane = normal_of(texelFetch(normals, sample_index).xy);
   vec3 p = (eye_from_grid * vec4(place, float(texelFetch(elevations, sample_index).x), 1.0)).xyz;
   float facing = -dot(eye_from_plane * over_plane, p) * inversesqrt(dot(p, p));
-  float half_side = min(0.55 + 0.05 / max(facing, 0.01), 0.8);
+  float half_side = widening * min(0.55 + 0.05 / max(facing, 0.01), 0.8);
   vec2 rise = over_plane.xy * (-spacing / max(over_plane.z, gentlest_cosine));
   vec3 u = eye_from_grid[0].xyz + rise.x * eye_from_plane[2], v = eye_from_grid[1].xyz + rise.y * eye_from_plane[2];
   float scale = -1.0 / p.z;
