@@ -40,7 +40,7 @@ class DrawnMaps : public DrawnSurface {
         spacing_(geometry.spacing),
         elevations_(geometry.elevations, GL_R16UI),
         normals_(geometry.normals, GL_RG16UI),
-        rows_(geometry.rows, GL_RG32I),
+        rows_(rows_on_the_card(geometry)),
         nothing_(gl_vertex_array()) {
     strips_ = gl_buffer(GL_ELEMENT_ARRAY_BUFFER, geometry.strips);
     splats_ = gl_buffer(GL_ELEMENT_ARRAY_BUFFER, geometry.splats);
@@ -64,6 +64,13 @@ class DrawnMaps : public DrawnSurface {
   }
 
  private:
+  static BufferTexture rows_on_the_card(const MapGeometry& geometry) {
+    if (geometry.needs_row_ends) return BufferTexture(geometry.rows, GL_RG32I);
+    std::vector<std::int32_t> offsets;
+    for (const MapRow& row : geometry.rows) offsets.push_back(row.offset);
+    return BufferTexture(offsets, GL_R32I);
+  }
+
   void load_seams(const MapGeometry& geometry) {
     seam_count_ = static_cast<GLsizei>(geometry.seam_triangles.size());
     if (seam_count_ == 0) return;

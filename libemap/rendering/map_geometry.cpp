@@ -15,9 +15,23 @@
 namespace emap {
 namespace {
 
-constexpr std::uint32_t kMostSide = 256;
-// Squares of a tile along a side: what is left of 256 samples after a rim at each end.
-constexpr std::uint32_t kTileSquares = kMostSide - 1 - 2 * kMostRims;
+// Rows of samples are stored from the first to the last one, holes and all, which narrow tiles have few of.
+// Interpolation looks up samples beside a tile's own, which are stored twice.
+struct TileSize {
+  std::uint32_t most_columns, most_rows;
+  std::uint32_t beyond;  // samples that go on beyond the tile's own, where the map does
+
+  std::uint32_t squares_across() const { return most_columns - 1 - 2 * beyond; }
+  std::uint32_t squares_down() const { return most_rows - 1 - 2 * beyond; }
+};
+
+bool interpolates(MapUse use) {
+  return use == MapUse::interpolated_splats || use == MapUse::overlapping_interpolated_splats;
+}
+
+TileSize tile_size(MapUse use) {
+  return interpolates(use) ? TileSize{128, 256, 2} : TileSize{64, 256, 0};
+}
 
 bool has_seams(MapUse use) {
   return use == MapUse::filled_mesh || use == MapUse::interpolated_splats;
@@ -56,12 +70,17 @@ class TangentPlanes {
 class GeometryWriter {
  public:
   GeometryWriter(const ElevationMaps& maps, const BoundingBox& box, MapUse use)
-      : maps_(maps), use_(use), scale_(1 / box.diagonal()), centre_((box.minimum + box.maximum) / 2) {}
+      : maps_(maps),
+        use_(use),
+        size_(tile_size(use)),
+        scale_(1 / box.diagonal()),
+        centre_((box.minimum + box.maximum) / 2) {}
 
   MapGeometry run(const GapFillingOptions& filling) {
     const ClosedMesh closed = closed_mesh(maps_, filling);
     const std::vector<DressedPatch> patches = dressed_patches(maps_, closed.mesh, rims_of(use_));
     geometry_.spacing = maps_.spacing * scale_;
+    geometry_.needs_row_ends = interpolates(use_);
     geometry_.samples = closed.mesh.positions.size();
     geometry_.open_edges = closed.filling.edges_left;
     geometry_.edges = closed.mesh.triangles.size() * 3 / 2;
@@ -90,24 +109,26 @@ class GeometryWriter {
         if (patch.ring[place] == 1) wide_places_[place] = is_wide_[next_vertex_++];
     }
     const std::size_t first_tile = geometry_.tiles.size();
-    const auto tiles_along = [](std::uint32_t samples) {
-      return samples <= kMostSide ? 1U : (samples - 1 + kTileSquares - 1) / kTileSquares;
+    const auto tiles_along = [](std::uint32_t samples, std::uint32_t most, std::uint32_t squares) {
+      return samples <= most ? 1U : (samples - 1 + squares - 1) / squares;
     };
-    const std::uint32_t across = tiles_along(map.columns), down = tiles_along(map.rows);
+    const std::uint32_t across = tiles_along(map.columns, size_.most_columns, size_.squares_across());
+    const std::uint32_t down = tiles_along(map.rows, size_.most_rows, size_.squares_down());
     for (std::uint32_t y = 0; y < down; ++y)
       for (std::uint32_t x = 0; x < across; ++x) add_tile(index, patch, region_of(map, x, across, y, down));
     if (has_seams(use_)) note_vertices(map, first_tile, across, down);
   }
 
-  static Region region_of(const ElevationPatch& map, std::uint32_t x, std::uint32_t across, std::uint32_t y,
-                          std::uint32_t down) {
-    const auto part = [](std::uint32_t index, std::uint32_t count, std::uint32_t samples) {
-      const std::uint32_t first = index * kTileSquares;
-      const std::uint32_t last = index + 1 == count ? samples - 1 : first + kTileSquares;
-      return std::array<std::uint32_t, 4>{first, last, first >= kMostRims && count > 1 ? first - kMostRims : 0,
-                                          std::min(last + 1 + kMostRims, samples)};
+  Region region_of(const ElevationPatch& map, std::uint32_t x, std::uint32_t across, std::uint32_t y,
+                   std::uint32_t down) const {
+    const auto part = [this](std::uint32_t index, std::uint32_t count, std::uint32_t samples, std::uint32_t squares) {
+      const std::uint32_t first = index * squares;
+      const std::uint32_t last = index + 1 == count ? samples - 1 : first + squares;
+      return std::array<std::uint32_t, 4>{first, last, first - std::min(size_.beyond, first),
+                                          std::min(last + 1 + size_.beyond, samples)};
     };
-    const auto column = part(x, across, map.columns), row = part(y, down, map.rows);
+    const auto column = part(x, across, map.columns, size_.squares_across());
+    const auto row = part(y, down, map.rows, size_.squares_down());
     return {column[2], column[3], row[2], row[3], {column[0], column[1], row[0], row[1]}};
   }
 
@@ -214,7 +235,8 @@ class GeometryWriter {
     for (std::uint32_t row = 0; row < map.rows; ++row)
       for (std::uint32_t column = 0; column < map.columns; ++column) {
         if (!map.mask[std::size_t{row} * map.columns + column]) continue;
-        const std::uint32_t x = std::min(column / kTileSquares, across - 1), y = std::min(row / kTileSquares, down - 1);
+        const std::uint32_t x = std::min(column / size_.squares_across(), across - 1);
+        const std::uint32_t y = std::min(row / size_.squares_down(), down - 1);
         const Region region = region_of(map, x, across, y, down);
         vertex_places_.push_back({static_cast<std::uint16_t>(first_tile + std::size_t{y} * across + x),
                                   place_in_grid(row - region.first_row, column - region.first_column)});
@@ -261,6 +283,7 @@ class GeometryWriter {
 
   const ElevationMaps& maps_;
   MapUse use_;
+  TileSize size_;
   double scale_;
   Eigen::Vector3d centre_;
   double lowest_ = 0, step_ = 1;  // of the patch's elevation codes
@@ -275,8 +298,9 @@ class GeometryWriter {
 
 std::size_t MapGeometry::bytes() const {
   const std::size_t seam_index_bytes = seam_vertices.size() <= 65536 ? 2 : 4;
-  return 128 * tiles.size() + sizeof(MapRow) * rows.size() + 2 * elevations.size() + 4 * normals.size() +
-         2 * (strips.size() + splats.size()) + 4 * seam_vertices.size() + seam_index_bytes * seam_triangles.size();
+  return 128 * tiles.size() + (needs_row_ends ? sizeof(MapRow) : sizeof(MapRow::offset)) * rows.size() +
+         2 * elevations.size() + 4 * normals.size() + 2 * (strips.size() + splats.size()) + 4 * seam_vertices.size() +
+         seam_index_bytes * seam_triangles.size();
 }
 
 MapGeometry map_geometry(const ElevationMaps& maps, const BoundingBox& box, MapUse use,

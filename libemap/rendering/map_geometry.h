@@ -23,7 +23,7 @@ enum class MapUse {
   overlapping_interpolated_splats,  // as splats, with a second rim to interpolate towards
 };
 
-// A rectangle of a patch, at most 256 samples wide and high.
+// A rectangle of a patch, at most 128 samples wide and 256 high.
 struct MapTile {
   std::uint32_t patch = 0;
   // (column, row, elevation code, 1) -> the model, centred and scaled to a diagonal of 1.
@@ -47,7 +47,8 @@ struct MapRow {
 struct MapGeometry {
   static constexpr std::uint16_t kNothing = 65535;  // elevation code between supported samples
 
-  double spacing = 0;  // of samples, diagonals
+  double spacing = 0;           // of samples, diagonals
+  bool needs_row_ends = false;  // on the card; where nothing is interpolated, rows' offsets are enough
   std::vector<MapTile> tiles;
   std::vector<MapRow> rows;
   std::vector<std::uint16_t> elevations;

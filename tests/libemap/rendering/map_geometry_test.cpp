@@ -108,6 +108,7 @@ TEST(MapGeometryTest, LargePatchesBecomeTilesThatAgreeWhereTheyMeet) {
   const Mesh waves = test::waves(60);
   const ElevationMaps maps = test::sampled(waves, 0.15).maps;
   ASSERT_GT(maps.patches[0].columns, 300U);
+  ASSERT_GT(maps.patches[0].rows, 300U);
   const BoundingBox box = bounding_box(waves.positions);
   const MapGeometry splats = map_geometry(maps, box, MapUse::interpolated_splats);
   EXPECT_GT(splats.tiles.size(), maps.patches.size());
@@ -171,7 +172,7 @@ TEST(MapGeometryTest, SplatsThatTrianglesLeaveAreWide) {
 TEST(MapGeometryTest, BytesAreThoseOfTheLists) {
   const ElevationMaps maps = test::sampled(test::waves(20), 1).maps;
   const MapGeometry geometry = map_geometry(maps, {{0, 0, -0.05}, {1, 1, 0.05}}, MapUse::splats);
-  EXPECT_EQ(geometry.bytes(), 128 * geometry.tiles.size() + 8 * geometry.rows.size() + 6 * geometry.elevations.size() +
+  EXPECT_EQ(geometry.bytes(), 128 * geometry.tiles.size() + 4 * geometry.rows.size() + 6 * geometry.elevations.size() +
                                   2 * geometry.splats.size());
 }
 
