@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -10,6 +11,7 @@ namespace emap {
 namespace {
 
 constexpr std::size_t kTexelsOfFrame = 12;  // as the shaders count them
+constexpr double kWideSplats = 1.5;         // times the radius
 
 Stage stage_of(Pass pass) {
   switch (pass) {
@@ -38,7 +40,7 @@ class DrawnMaps : public DrawnSurface {
         spacing_(geometry.spacing),
         elevations_(geometry.elevations, GL_R16UI),
         normals_(geometry.normals, GL_RG16UI),
-        rows_(geometry.rows, GL_RG32I),
+        rows_(rows_on_the_card(geometry)),
         nothing_(gl_vertex_array()) {
     strips_ = gl_buffer(GL_ELEMENT_ARRAY_BUFFER, geometry.strips);
     splats_ = gl_buffer(GL_ELEMENT_ARRAY_BUFFER, geometry.splats);
@@ -62,6 +64,13 @@ class DrawnMaps : public DrawnSurface {
   }
 
  private:
+  static BufferTexture rows_on_the_card(const MapGeometry& geometry) {
+    if (geometry.needs_row_ends) return BufferTexture(geometry.rows, GL_RG32I);
+    std::vector<std::int32_t> offsets;
+    for (const MapRow& row : geometry.rows) offsets.push_back(row.offset);
+    return BufferTexture(offsets, GL_R32I);
+  }
+
   void load_seams(const MapGeometry& geometry) {
     seam_count_ = static_cast<GLsizei>(geometry.seam_triangles.size());
     if (seam_count_ == 0) return;
@@ -91,16 +100,39 @@ class DrawnMaps : public DrawnSurface {
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, is_mesh ? strips_.get() : splats_.get());
     program.set("spacing", spacing_);
     program.set("keeps_own_normal", seam_count_ == 0 ? 1 : 0);
-    for (std::size_t i = 0; i < tiles_.size(); ++i) {
+    for (const std::size_t i : from_front_to_back(view)) {
       const MapTile& tile = tiles_[i];
       const std::uint32_t count = is_mesh ? tile.strip_count : tile.splat_count;
       if (count == 0) continue;
       set_tile(program, tile, pass, view);
       if (pass == Pass::identity) program.set("tile", static_cast<int>(i));
-      const std::size_t first = is_mesh ? tile.first_strip : tile.first_splat;
-      glDrawElements(is_mesh ? GL_TRIANGLE_STRIP : GL_POINTS, static_cast<GLsizei>(count), GL_UNSIGNED_SHORT,
-                     reinterpret_cast<const void*>(sizeof(std::uint16_t) * first));
+      if (is_mesh) {
+        draw_indices(GL_TRIANGLE_STRIP, tile.first_strip, count);
+        continue;
+      }
+      const std::uint32_t ordinary = count - tile.wide_count;
+      program.set("widening", 1.0);
+      draw_indices(GL_POINTS, tile.first_splat, ordinary);
+      if (tile.wide_count == 0) continue;
+      program.set("widening", kWideSplats);
+      draw_indices(GL_POINTS, tile.first_splat + ordinary, tile.wide_count);
     }
+  }
+
+  static void draw_indices(GLenum what, std::size_t first, std::uint32_t count) {
+    glDrawElements(what, static_cast<GLsizei>(count), GL_UNSIGNED_SHORT,
+                   reinterpret_cast<const void*>(sizeof(std::uint16_t) * first));
+  }
+
+  // So that what is hidden is mostly found to be before it is shaded.
+  std::vector<std::size_t> from_front_to_back(const View& view) const {
+    std::vector<std::pair<double, std::size_t>> order;
+    for (std::size_t i = 0; i < tiles_.size(); ++i)
+      order.emplace_back((tiles_[i].middle - view.eye_in_model).squaredNorm(), i);
+    std::sort(order.begin(), order.end());
+    std::vector<std::size_t> tiles;
+    for (const auto& [distance, tile] : order) tiles.push_back(tile);
+    return tiles;
   }
 
   static void set_tile(const GlProgram& program, const MapTile& tile, Pass pass, const View& view) {
@@ -165,7 +197,9 @@ class DrawnMaps : public DrawnSurface {
     (*program)->set("patch_colour", Eigen::Vector3d(0.8, 0.8, 0.8));
     glBindVertexArray(seam_array_.get());
     glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, seam_triangles_.get());
+    if (view.one_sided) glEnable(GL_CULL_FACE);
     glDrawElements(GL_TRIANGLES, seam_count_, seam_type_, nullptr);
+    glDisable(GL_CULL_FACE);
     return {};
   }
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "libemap/rendering/shader_set.h"
 #include "libthin/foundation/memory.h"
@@ -29,6 +31,15 @@ GlFramebuffer framebuffer(GLuint colour, GLuint depth) {
   glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, colour, 0);
   if (depth) glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, depth, 0);
   return GlFramebuffer(name);
+}
+
+int half_of_largest_point(int width, int height) {
+  std::array<GLfloat, 2> sizes = {1, 1};
+  glGetFloatv(GL_POINT_SIZE_RANGE, sizes.data());
+  std::array<GLint, 2> most = {width, height};
+  glGetIntegerv(GL_MAX_VIEWPORT_DIMS, most.data());
+  const int half = static_cast<int>(std::ceil(sizes[1] / 2));
+  return std::max(0, std::min({half, (most[0] - width) / 2, (most[1] - height) / 2}));
 }
 
 // Rows from the top instead of from the bottom.
@@ -67,6 +78,7 @@ Result<Frame> Frame::create(int width, int height, bool deep) {
   frame.width_ = width;
   frame.height_ = height;
   frame.deep_ = deep;
+  frame.pixels_beyond_ = half_of_largest_point(width, height);
   frame.colour_ =
       attachment(deep ? GL_RGBA16 : GL_RGBA8, GL_RGBA, deep ? GL_UNSIGNED_SHORT : GL_UNSIGNED_BYTE, width, height);
   frame.depth_ = attachment(GL_DEPTH_COMPONENT24, GL_DEPTH_COMPONENT, GL_UNSIGNED_INT, width, height);
@@ -88,7 +100,7 @@ void Frame::begin() const {
 
 void Frame::resume() const {
   glBindFramebuffer(GL_FRAMEBUFFER, picture_.get());
-  glViewport(0, 0, width_, height_);
+  glViewport(-pixels_beyond_, -pixels_beyond_, width_ + 2 * pixels_beyond_, height_ + 2 * pixels_beyond_);
   glDisable(GL_BLEND);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_LEQUAL);

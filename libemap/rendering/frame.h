@@ -15,6 +15,8 @@ class Frame {
 
   int width() const { return width_; }
   int height() const { return height_; }
+  // Beyond the picture on all sides the viewport goes on: by half the largest point that the driver draws.
+  int pixels_beyond() const { return pixels_beyond_; }
 
   // Clears the picture to white, or to zeros where it is deep, and depth to the farthest; draws go there.
   void begin() const;
@@ -34,7 +36,7 @@ class Frame {
   DeepImage deep_image() const;
 
  private:
-  int width_ = 0, height_ = 0;
+  int width_ = 0, height_ = 0, pixels_beyond_ = 0;
   bool deep_ = false;
   GlTexture colour_, depth_, sums_, identities_;
   GlFramebuffer picture_, summing_, resolving_, identifying_;

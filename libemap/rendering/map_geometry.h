@@ -23,16 +23,19 @@ enum class MapUse {
   overlapping_interpolated_splats,  // as splats, with a second rim to interpolate towards
 };
 
-// A rectangle of a patch, at most 256 samples wide and high.
+// A rectangle of a patch, at most 128 samples wide and 256 high.
 struct MapTile {
   std::uint32_t patch = 0;
   // (column, row, elevation code, 1) -> the model, centred and scaled to a diagonal of 1.
   Eigen::Matrix4d model_from_grid = Eigen::Matrix4d::Identity();
   Eigen::Matrix3d model_from_plane = Eigen::Matrix3d::Identity();  // for normals: its columns are the plane's axes
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();                // of its samples, in the model so scaled
   std::uint32_t first_row = 0;                                     // in MapGeometry::rows
   std::uint32_t row_count = 0;
   std::uint32_t first_strip = 0, strip_count = 0;  // indices in MapGeometry::strips
-  std::uint32_t first_splat = 0, splat_count = 0;  // indices in MapGeometry::splats
+  // Indices in MapGeometry::splats; the last `wide_count` of them need a radius wider than (5.1), for triangles around
+  // them leave their discs.
+  std::uint32_t first_splat = 0, splat_count = 0, wide_count = 0;
 };
 
 // Samples of a row are stored from its first to its last one: the sample at `column` at offset + column.
@@ -44,7 +47,8 @@ struct MapRow {
 struct MapGeometry {
   static constexpr std::uint16_t kNothing = 65535;  // elevation code between supported samples
 
-  double spacing = 0;  // of samples, diagonals
+  double spacing = 0;           // of samples, diagonals
+  bool needs_row_ends = false;  // on the card; where nothing is interpolated, rows' offsets are enough
   std::vector<MapTile> tiles;
   std::vector<MapRow> rows;
   std::vector<std::uint16_t> elevations;

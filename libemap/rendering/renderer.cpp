@@ -91,6 +91,7 @@ void Renderer::set_picture(const Image& picture) {
 
 Result<void> Renderer::draw(const Camera& camera, const DrawOptions& options) {
   View view(camera, frame_->width(), frame_->height());
+  view.widen_clipping(frame_->pixels_beyond());
   view.one_sided = one_sided_;
   view.radius_factor = options.radius_factor;
   view.behind = 1.5 * spacing_;
@@ -112,6 +113,8 @@ Result<void> Renderer::draw(const Camera& camera, const DrawOptions& options) {
     drawn = options.in_one_pass ? draw(Pass::interpolated) : draw_interpolated(options, view);
   else
     drawn = draw_blended(options, view);
+  // Single discs neither blend nor are interpolated, so the quarter that shows them is drawn again.
+  if (drawn && options.shading == Shading::split && options.mode != Mode::mesh) drawn = draw_quarter_of_patches(view);
   glFinish();
   if (drawn && glGetError() != GL_NO_ERROR) return Error{ErrorKind::internal, "the driver refused to draw"};
   return drawn;
@@ -138,10 +141,9 @@ Result<void> Renderer::draw_blended(const DrawOptions& options, const View& view
   if (!program) return program.error();
   glBindVertexArray(nothing_.get());
   glDrawArrays(GL_TRIANGLES, 0, 3);
-  return options.shading == Shading::split ? draw_quarter_of_patches(view) : drawn;
+  return drawn;
 }
 
-// Single discs do not blend, so the quarter that shows them is drawn again.
 Result<void> Renderer::draw_quarter_of_patches(const View& view) {
   frame_->resume();
   glEnable(GL_SCISSOR_TEST);

@@ -42,8 +42,7 @@ thin::Result<const GlProgram*> ShaderSet::use(Stage stage, Shading shading, int 
   program.set("largest_square", largest_square_pixels_);
   program.set("one_sided", view.one_sided ? 1 : 0);
   program.set("behind", view.behind);
-  program.set("bulge", view.behind / 3);
-  program.set("forward", view.behind / 2);
+  program.set("forward", view.behind);
   return &program;
 }
 

@@ -76,7 +76,30 @@ void main() {
   mat4 clip_from_grid = mat4(texelFetch(frames, frame), texelFetch(frames, frame + 1), texelFetch(frames, frame + 2),
                              texelFetch(frames, frame + 3));
   gl_Position = position_of(clip_from_grid, place, float(texelFetch(elevations, sample_index).x));
-  MOVE_FORWARD
+}
+)";
+
+// Against splats, which they need not meet to the last bit, with fewer look-ups; and a little nearer to the eye.
+constexpr const char* kForwardSeamVertex = R"(
+uniform mat4 clip_from_eye;
+uniform vec2 depth_line;
+uniform float forward;
+in uvec2 position;
+out vec3 normal;
+void main() {
+  int frame = frame_texels * int(position.x);
+  ivec2 place = place_of(int(position.y));
+  vec4 u = texelFetch(frames, frame + 7), v = texelFetch(frames, frame + 8), up = texelFetch(frames, frame + 9);
+  vec4 origin = texelFetch(frames, frame + 10);
+  int sample_index = texelFetch(rows, int(u.w) + place.y).x + place.x;
+  vec3 over_plane = normal_of(texelFetch(normals, sample_index).xy);
+  float inverse_step = inversesqrt(dot(u.xyz, u.xyz));
+  normal = u.xyz * (over_plane.x * inverse_step) + v.xyz * (over_plane.y * inverse_step) +
+           up.xyz * (over_plane.z * sqrt(origin.w));
+  float elevation = float(texelFetch(elevations, sample_index).x);
+  vec3 p = u.xyz * float(place.x) + (v.xyz * float(place.y) + (up.xyz * elevation + origin.xyz));
+  gl_Position = clip_from_eye * vec4(p, 1.0);
+  gl_Position.z -= 2.0 * depth_line.y * forward / gl_Position.w;
 }
 )";
 
@@ -119,8 +142,10 @@ void place_splat(vec3 p, vec3 n, float radius) {
 }
 )";
 
-// Radii by (5.1).
+// Radii by (5.1), with which the discs of a flat map just touch in the middle of its squares: so a little wider, the
+// more so where they are seen from the side, and as much more as the list of splats asks for.
 constexpr const char* kMapSplatVertex = R"(
+uniform float widening;
 uniform int first_row;
 uniform mat4 eye_from_grid;
 uniform mat3 eye_from_plane;
@@ -130,8 +155,51 @@ void main() {
   int sample_index = texelFetch(rows, first_row + place.y).x + place.x;
   vec3 over_plane = normal_of(texelFetch(normals, sample_index).xy);
   vec3 p = (eye_from_grid * vec4(place, float(texelFetch(elevations, sample_index).x), 1.0)).xyz;
-  place_splat(p, eye_from_plane * over_plane, 0.70710678 * spacing / (0.1 + 0.9 * max(over_plane.z, 0.0)));
-  IDENTIFY
+  vec3 n = eye_from_plane * over_plane;
+  float facing = -dot(n, p) * inversesqrt(dot(p, p));
+  float wider = widening * (1.01 + 0.02 / max(facing, 0.08));
+  place_splat(p, n, wider * 0.70710678 * spacing / (0.1 + 0.9 * max(over_plane.z, 0.0)));
+}
+)";
+
+// A sample's square: what lies half a step and a little more beside it over the base plane, in the surface's tangent
+// plane, so that squares overlap whatever the slope; the more so where they are seen from the side, for there what they
+// leave the surface by shows between them. As far as the picture is concerned the tangent plane is where the sample is:
+// squares are small, and where a ray meets the surface is found out later.
+constexpr const char* kSquareVertex = R"(
+uniform mat4 clip_from_eye;
+uniform float pixels;
+uniform vec2 picture_centre;
+uniform float largest_square;
+uniform bool one_sided;
+uniform float widening;
+uniform int first_row;
+uniform int tile;
+uniform mat4 eye_from_grid;
+uniform mat3 eye_from_plane;
+uniform float spacing;
+flat out vec4 sides_of_pixels;  // from pixels beside the centre to half sides, column by column
+flat out uvec3 square;          // the centre's pixel as floats' bits, and which sample it is
+void main() {
+  ivec2 place = place_of(gl_VertexID);
+  int sample_index = texelFetch(rows, first_row + place.y).x + place.x;
+  vec3 over_plane = normal_of(texelFetch(normals, sample_index).xy);
+  vec3 p = (eye_from_grid * vec4(place, float(texelFetch(elevations, sample_index).x), 1.0)).xyz;
+  float facing = -dot(eye_from_plane * over_plane, p) * inversesqrt(dot(p, p));
+  float half_side = widening * min(0.55 + 0.05 / max(facing, 0.01), 0.8);
+  vec2 rise = over_plane.xy * (-spacing / max(over_plane.z, gentlest_cosine));
+  vec3 u = eye_from_grid[0].xyz + rise.x * eye_from_plane[2], v = eye_from_grid[1].xyz + rise.y * eye_from_plane[2];
+  float scale = -1.0 / p.z;
+  vec2 ray = p.xy * scale;
+  scale *= pixels * half_side;
+  vec2 right = scale * (u.xy + ray * u.z), up = scale * (v.xy + ray * v.z);
+  float area = right.x * up.y - right.y * up.x;
+  sides_of_pixels = vec4(up.y, -right.y, -up.x, right.x) / (abs(area) < 1e-6 ? 1e-6 : area);
+  square = uvec3(floatBitsToUint(ray * pixels + picture_centre), uint(tile) << 16 | uint(gl_VertexID));
+  vec2 reach = abs(right) + abs(up);
+  gl_PointSize = min(2.0 * max(reach.x, reach.y), largest_square);
+  gl_Position = clip_from_eye * vec4(p, 1.0);
+  if (one_sided && facing < 0.0) gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
 }
 )";
 
@@ -168,6 +236,7 @@ float distance_at(float depth) { return depth_line.y / (depth_line.x - depth); }
 )";
 
 constexpr const char* kShadingCode = R"(
+uniform vec2 picture_centre;
 uniform mat3 model_from_eye;
 uniform vec3 eye_in_model;
 uniform samplerCube environment;
@@ -179,12 +248,6 @@ vec3 textured(vec3 d, float distance) {
   vec3 p = model_from_eye * (d * distance) + eye_in_model;
   return texture(picture, vec2(p.x, -p.y) + 0.5).rgb;
 }
-)";
-
-// The lower left quarter of Shading::split.
-constexpr const char* kPictureCentre = R"(
-uniform vec2 picture_centre;
-bool in_patch_quarter() { return gl_FragCoord.x < picture_centre.x && gl_FragCoord.y < picture_centre.y; }
 )";
 
 // n: of unit length. distance: along the view.
@@ -215,17 +278,13 @@ std::string shade_function(Shading shading) {
   return "void shade(vec3 n, vec3 d, float distance) {\n  " + body + "\n}\n";
 }
 
-std::string mesh_fragment(const std::string& exception) {
-  return fmt::format(R"(
+constexpr const char* kMeshFragment = R"(
 in vec3 normal;
-void main() {{
-  {}
+void main() {
   vec3 d = ray();
   shade(normalize(normal), d, distance_at(gl_FragCoord.z));
-}}
-)",
-                     exception);
 }
+)";
 
 // Cuts the disc out of its square; leaves where the ray meets it.
 constexpr const char* kDiscCode = R"(
@@ -245,9 +304,7 @@ DiscHit hit_disc() {
 
 // At half their radius where single splats are to be seen.
 std::string reduction_of(Shading shading) {
-  if (shading == Shading::patches) return "if (hit.squared > 0.25 * centre.w) discard;";
-  if (shading == Shading::split) return "if (in_patch_quarter() && hit.squared > 0.25 * centre.w) discard;";
-  return "";
+  return shading == Shading::patches ? "if (hit.squared > 0.25 * centre.w) discard;" : "";
 }
 
 std::string splat_fragment(Shading shading) {
@@ -402,28 +459,19 @@ void main() {{
                      reduction_of(shading), rounds);
 }
 
-// Which disc is nearest, by tile and place. Discs end a little beyond half-way to the next samples over the plane, so
-// that they do not stick out where the surface turns away. They bulge away from the eye towards their rims: of discs at
-// the same depth the one whose centre is nearest is taken.
-std::string identity_fragment(Shading shading) {
-  return fmt::format(R"(
-uniform float bulge;
-uniform mat3 eye_from_plane;
-uniform float spacing;
-flat in uint identity;
+// Which sample's square is nearest, by tile and place. At the sample's own depth: software renderers pay dearly for
+// depths of pixels, and only what squares overlap by differs.
+constexpr const char* kIdentityFragment = R"(
+flat in vec4 sides_of_pixels;
+flat in uvec3 square;
 out uint nearest;
-void main() {{
-  DiscHit hit = hit_disc();
-  {}
-  vec2 over_plane = abs(vec2(dot(hit.from_centre, eye_from_plane[0]), dot(hit.from_centre, eye_from_plane[1])));
-  if (max(over_plane.x, over_plane.y) > 0.7 * spacing) discard;
-  float lift = bulge * hit.squared / centre.w;
-  gl_FragDepth = depth_at(hit.inverse_distance) + depth_line.y * hit.inverse_distance * hit.inverse_distance * lift;
-  nearest = identity;
-}}
-)",
-                     reduction_of(shading));
+void main() {
+  vec2 aside = gl_FragCoord.xy - uintBitsToFloat(square.xy);
+  vec2 sides = abs(sides_of_pixels.xy * aside.x + sides_of_pixels.zw * aside.y);
+  if (max(sides.x, sides.y) > 1.0) discard;
+  nearest = square.z;
 }
+)";
 
 // The interpolation of 5.2.3 once for each pixel, from the disc that is nearest there. Where neighbours are missing the
 // disc's own normal stays: triangles that close the gap are drawn over it. Neither discards nor moves depths, so that
@@ -455,8 +503,7 @@ void main() {{
   vec3 start = ((d * distance - origin.xyz) * axes) * inverse_squares;
   vec3 eye = (-origin.xyz * axes) * inverse_squares;
   Interpolated at = interpolate(start, middle.xy, eye, facing, {});
-  bool single = {};
-  if (at.found && !single) {{
+  if (at.found) {{
     n = eye_from_plane * at.over_plane;
     distance *= at.along;
   }}
@@ -464,8 +511,7 @@ void main() {{
   shade(normalize(n), d, distance);
 }}
 )",
-                     rounds, shading == Shading::split ? "in_patch_quarter()" : "false",
-                     shading == Shading::split ? "patch_colour = texelFetch(frames, frame + 11).xyz;" : "");
+                     rounds, shading == Shading::split ? "patch_colour = texelFetch(frames, frame + 11).xyz;" : "");
 }
 
 std::string vertex_of(Stage stage) {
@@ -474,10 +520,10 @@ std::string vertex_of(Stage stage) {
     case Stage::map_mesh:
       return map + kPositionCode + kMapMeshVertex;
     case Stage::seam_mesh:
-      return map + kPositionCode + kFramesCode + kSeamVertex;
     case Stage::seam_between_splats:
+      return map + kPositionCode + kFramesCode + kSeamVertex;
     case Stage::seam_over_discs:
-      return map + kRayDepth + kPositionCode + kFramesCode + kSeamVertex;
+      return map + kFramesCode + kForwardSeamVertex;
     case Stage::plain_mesh:
       return std::string(kNormalCode) + kPlainMeshVertex;
     case Stage::map_splats:
@@ -490,7 +536,7 @@ std::string vertex_of(Stage stage) {
     case Stage::plain_accumulation:
       return std::string(kNormalCode) + kSplatVertex + kPlainSplatVertex;
     case Stage::map_identity:
-      return map + kSplatVertex + "flat out uint identity;\nuniform int tile;\n" + kMapSplatVertex;
+      return map + fmt::format("const float gentlest_cosine = {};\n", kGentlestCosine) + kSquareVertex;
     case Stage::normalisation:
     case Stage::map_resolve:
       return kWholePictureVertex;
@@ -500,16 +546,14 @@ std::string vertex_of(Stage stage) {
 
 std::string fragment_of(Stage stage, Shading shading, int rounds) {
   const std::string colour = stage == Stage::map_resolve ? "vec3 patch_colour;\n" : "uniform vec3 patch_colour;\n";
-  const std::string shade =
-      std::string(kRayDepth) + kRayCode + colour + kPictureCentre + kShadingCode + shade_function(shading);
+  const std::string shade = std::string(kRayDepth) + kRayCode + colour + kShadingCode + shade_function(shading);
   switch (stage) {
     case Stage::map_mesh:
     case Stage::seam_mesh:
     case Stage::plain_mesh:
-      return shade + mesh_fragment("");
     case Stage::seam_over_discs:
-    case Stage::seam_between_splats:  // not where single splats are to be seen
-      return shade + mesh_fragment(shading == Shading::split ? "if (in_patch_quarter()) discard;" : "");
+    case Stage::seam_between_splats:
+      return shade + kMeshFragment;
     case Stage::map_splats:
     case Stage::plain_splats:
       return shade + kDiscCode + splat_fragment(shading);
@@ -517,7 +561,7 @@ std::string fragment_of(Stage stage, Shading shading, int rounds) {
       return shade + kNormalCode + kMapCode + kDiscCode + kCellCode + kInterpolationCode +
              interpolated_fragment(shading, rounds);
     case Stage::map_identity:
-      return std::string(kRayDepth) + kRayCode + kPictureCentre + kDiscCode + identity_fragment(shading);
+      return kIdentityFragment;
     case Stage::map_resolve:
       return shade + kNormalCode + kMapCode + kFramesCode + kCellCode + kInterpolationCode +
              resolve_fragment(shading, rounds);
@@ -537,15 +581,7 @@ std::string fragment_of(Stage stage, Shading shading, int rounds) {
 
 ShaderSources shader_sources(Stage stage, Shading shading, int rounds) {
   const std::string version = "#version 330 core\n";
-  const std::string identify = stage == Stage::map_identity
-                                   ? "#define IDENTIFY identity = uint(tile) << 16 | uint(gl_VertexID);\n"
-                                   : "#define IDENTIFY\n";
-  // Discs in front of a seam hide it only where they are farther in front than they are apart from the surface.
-  const std::string move = stage == Stage::seam_over_discs
-                               ? "#define MOVE_FORWARD gl_Position.z -= 2.0 * depth_line.y * forward / gl_Position.w;\n"
-                                 "uniform float forward;\n"
-                               : "#define MOVE_FORWARD\n";
-  return {version + identify + move + vertex_of(stage), version + fragment_of(stage, shading, rounds)};
+  return {version + vertex_of(stage), version + fragment_of(stage, shading, rounds)};
 }
 
 }  // namespace emap

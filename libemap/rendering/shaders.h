@@ -25,7 +25,7 @@ enum class Stage {
   plain_mesh,           // positions and normals from vertex buffers
   map_splats,           // discs, one normal each
   plain_splats,         // the same from vertex buffers
-  map_identity,         // which disc is nearest, by tile and place
+  map_identity,         // which sample is nearest, by tile and place
   map_resolve,          // from that the interpolation of 5.2.3, once for each pixel; over the whole picture
   map_interpolated,     // the same in one pass: every disc's fragments look up their neighbours
   map_visibility,       // depth alone, a little behind the discs
@@ -34,6 +34,9 @@ enum class Stage {
   plain_accumulation,
   normalisation,  // the sums to normals, shaded; over the whole picture
 };
+
+// Squares of Stage::map_identity are no steeper over their base plane than this, whatever their normal says.
+constexpr double kGentlestCosine = 0.1;
 
 struct ShaderSources {
   std::string vertex, fragment;

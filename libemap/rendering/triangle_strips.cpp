@@ -7,7 +7,7 @@
 namespace emap {
 namespace {
 
-constexpr std::uint32_t kBandColumns = 32;
+constexpr std::uint32_t kBandColumns = 64;
 
 class StripWriter {
  public:

@@ -15,7 +15,7 @@ struct SquareRange {
   std::uint32_t first_column, last_column, first_row, last_row;
 };
 
-// Appends the strip of these squares, row by row in bands of 32 columns, so that what one row has passed through a
+// Appends the strip of these squares, row by row in bands of 64 columns, so that what one row has passed through a
 // vertex cache is still there when the next one needs it. Diagonals are those of visit_grid_triangles(); triangles
 // steeper than steepest_slope (a tangent) are left out, as canonical_mesh() does. Breaks are bridged by triangles
 // without an area. index_of(row, column): what stands in the strip for a sample.

@@ -21,4 +21,9 @@ View::View(const Camera& camera, int width_pixels, int height_pixels) : width(wi
   pixels = 1 / scale;
 }
 
+void View::widen_clipping(int pixels_beyond) {
+  clip_from_eye.row(0) *= static_cast<double>(width) / (width + 2 * pixels_beyond);
+  clip_from_eye.row(1) *= static_cast<double>(height) / (height + 2 * pixels_beyond);
+}
+
 }  // namespace emap

@@ -9,6 +9,10 @@ namespace emap {
 struct View {
   View(const Camera& camera, int width, int height);
 
+  // Clips so many pixels beyond the picture on all sides, for a viewport as much wider: OpenGL draws no point whose
+  // centre is clipped, though it may reach into the picture.
+  void widen_clipping(int pixels);
+
   int width, height;
   Eigen::Matrix4d eye_from_model, clip_from_eye;
   Eigen::Matrix3d model_from_eye;  // the turn alone

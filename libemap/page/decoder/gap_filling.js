@@ -166,11 +166,15 @@ class GapFiller {
     });
   }
 
+  // In the order of the other decoder: where loops meet at a vertex, the first edge is followed.
   open_edges() {
     const of_inserted = this.inserted.flatMap(([a, b, c]) => [
       { from: a, to: b, opposite: c }, { from: b, to: c, opposite: a }, { from: c, to: a, opposite: b },
     ]);
-    return [...this.boundary, ...of_inserted].filter(({ from, to }) => this.is_boundary(from, to));
+    const least = (edge) => Math.min(edge.from, edge.to), largest = (edge) => Math.max(edge.from, edge.to);
+    return [...this.boundary, ...of_inserted]
+      .filter(({ from, to }) => this.is_boundary(from, to))
+      .sort((a, b) => least(a) - least(b) || largest(a) - largest(b));
   }
 
   insert_best_first() {

@@ -52,7 +52,8 @@ function cross(a, b) {
 }
 
 function normalised(a) {
-  return scaled(1 / Math.sqrt(dot(a, a)), a);
+  const length = Math.sqrt(dot(a, a));
+  return [a[0] / length, a[1] / length, a[2] / length];
 }
 
 function normal_of(coded_x, coded_y) {

@@ -99,6 +99,25 @@ TEST_P(ViewerTest, DrawsTheDecodedSurface) {
   }
 }
 
+// The same triangles, in the same order.
+TEST_P(ViewerTest, ClosesGapsAsTheProgramDoes) {
+  const Bytes stream = ring_stream(GetParam());
+  Browser browser;
+  ASSERT_EQ(open(browser, web_page("ring", stream)), "drawn");
+  const nlohmann::json found = browser.evaluate(fmt::format(R"((() => {{
+    const stream = decode_stream(Uint8Array.from(atob("{}"), (letter) => letter.charCodeAt(0)), () => {{}});
+    const surface = surface_of(stream, build_model(stream, () => {{}}));
+    return new GapFiller(surface, stream.header.spacing, stream.header.least).fill();
+  }})())",
+                                                            test::base64_of(stream)));
+  const ClosedMesh closed = closed_mesh(read_stream(stream).value().maps);
+  const auto& triangles = closed.mesh.triangles;
+  ASSERT_GT(closed.filling.inserted, 100U);
+  ASSERT_EQ(found.size(), closed.filling.inserted);
+  const std::size_t first = triangles.size() - closed.filling.inserted;
+  for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i], nlohmann::json(triangles[first + i]));
+}
+
 TEST_P(ViewerTest, ShadesAsTheLinkAsks) {
   const Bytes stream = ring_stream(GetParam());
   const test::View view{30, 15, 2, 200, 200};

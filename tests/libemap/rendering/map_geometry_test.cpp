@@ -108,6 +108,7 @@ TEST(MapGeometryTest, LargePatchesBecomeTilesThatAgreeWhereTheyMeet) {
   const Mesh waves = test::waves(60);
   const ElevationMaps maps = test::sampled(waves, 0.15).maps;
   ASSERT_GT(maps.patches[0].columns, 300U);
+  ASSERT_GT(maps.patches[0].rows, 300U);
   const BoundingBox box = bounding_box(waves.positions);
   const MapGeometry splats = map_geometry(maps, box, MapUse::interpolated_splats);
   EXPECT_GT(splats.tiles.size(), maps.patches.size());
@@ -144,10 +145,34 @@ TEST(MapGeometryTest, OverlappingPatchesGoOnAsTheSurfaceDoes) {
   }
 }
 
+// A plain with a step across it: splats beside the step are wide, and none is lost or listed twice.
+TEST(MapGeometryTest, SplatsThatTrianglesLeaveAreWide) {
+  for (const double step : {0.0, 1.0}) {
+    ElevationMaps maps;
+    maps.spacing = 1;
+    ElevationPatch patch;
+    patch.columns = 12;
+    patch.rows = 10;
+    patch.mask.assign(120, 1);
+    for (std::size_t place = 0; place < 120; ++place) patch.elevation.push_back(place % 12 < 6 ? 0 : step);
+    maps.patches.push_back(patch);
+    const MapGeometry geometry = map_geometry(maps, {{0, 0, 0}, {11, 9, 1}}, MapUse::splats);
+    ASSERT_EQ(geometry.tiles.size(), 1U);
+    const MapTile& tile = geometry.tiles[0];
+    EXPECT_EQ(std::set(geometry.splats.begin(), geometry.splats.end()).size(), 120U);
+    EXPECT_EQ(tile.splat_count, 120U);
+    EXPECT_EQ(tile.wide_count > 0, step > 0);
+    for (std::uint32_t i = 0; i < tile.splat_count; ++i) {
+      const bool beside_step = std::abs(static_cast<int>(place_of(geometry.splats[i]).column) - 6) <= 2;
+      EXPECT_TRUE(beside_step || i < tile.splat_count - tile.wide_count);
+    }
+  }
+}
+
 TEST(MapGeometryTest, BytesAreThoseOfTheLists) {
   const ElevationMaps maps = test::sampled(test::waves(20), 1).maps;
   const MapGeometry geometry = map_geometry(maps, {{0, 0, -0.05}, {1, 1, 0.05}}, MapUse::splats);
-  EXPECT_EQ(geometry.bytes(), 128 * geometry.tiles.size() + 8 * geometry.rows.size() + 6 * geometry.elevations.size() +
+  EXPECT_EQ(geometry.bytes(), 128 * geometry.tiles.size() + 4 * geometry.rows.size() + 6 * geometry.elevations.size() +
                                   2 * geometry.splats.size());
 }
 

@@ -270,6 +270,35 @@ TEST_P(RendererTest, CoarserLevelsAndWiderDiscsHaveNoHoles) {
   }
 }
 
+// What lies just outside a close view reaches into it as in a wider one: the middle of the wider is the close one.
+TEST_P(RendererTest, ACloseViewsBordersAreThoseOfAWiderView) {
+  const Scene& from = scene("sphere");
+  const Camera close{.azimuth_degrees = 35, .elevation_degrees = 40, .distance = 1, .field_of_view_degrees = 6};
+  Camera wide = close;
+  wide.field_of_view_degrees = 360 / std::numbers::pi * std::atan(2 * std::tan(std::numbers::pi / 60));
+  for (const Mode mode : {Mode::mesh, Mode::splats, Mode::splats_blended, Mode::splats_interpolated}) {
+    SCOPED_TRACE(static_cast<int>(mode));
+    const auto picture = [&](const Camera& camera, int side) {
+      const auto renderer = *Renderer::create(side, side, false);
+      EXPECT_TRUE(renderer->load(map_geometry(from.maps, from.box, use_of(mode))));
+      EXPECT_TRUE(renderer->draw(camera, {.mode = mode}));
+      return renderer->image();
+    };
+    const Image inner = picture(close, kSide), outer = picture(wide, 2 * kSide);
+    int drawn = 0, border_differs = 0, differs = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        const int a = inner.pixel(x, y)[0], b = outer.pixel(x + kSide / 2, y + kSide / 2)[0];
+        drawn += b < 255;
+        differs += std::abs(a - b) > 2;
+        border_differs += (x % (kSide - 1) == 0 || y % (kSide - 1) == 0) && std::abs(a - b) > 2;
+      }
+    EXPECT_GT(drawn, kSide * kSide / 2);
+    EXPECT_LE(differs, kSide * kSide / 500);  // edges that rounding moves
+    EXPECT_LE(border_differs, 4);
+  }
+}
+
 TEST_P(RendererTest, WhatCannotBeDrawnIsAnError) {
   const auto renderer = *Renderer::create(8, 8, false);
   EXPECT_EQ(renderer->load(MapGeometry()).error().kind, thin::ErrorKind::input);
