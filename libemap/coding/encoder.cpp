@@ -23,6 +23,7 @@ constexpr std::uint32_t kFewestSamples = 16;
 constexpr std::uint32_t kMostSamples = 6000;
 constexpr double kResolutionRatio = 1.2599;  // between resolutions that are tried: the cube root of two
 
+constexpr double kLeastGain = 0.01;  // of bytes, by a look at another resolution that is worth going there
 constexpr double kLeastHelp = 0.95;  // of the error, that is left by a finer resolution that is worth going on
 
 constexpr double kCoarsestError = 1e-3;  // in diagonals, that partitions are made for
@@ -122,20 +123,26 @@ class Search {
     return best;
   }
 
-  // The next finer and the next coarser resolution; on in the direction that is better, as long as it is.
+  // The next coarser and the next finer resolution; on in the direction that is better, as long as it is.
   EncodingTrial at_best_resolution(EncodingTrial best) const {
+    constexpr std::array kRatios = {1 / kResolutionRatio, kResolutionRatio};
     const std::uint32_t middle = best.samples_per_diagonal;
-    std::vector<EncodingTrial> sides = all_of(2, [&, step = best.step](std::size_t i) {
-      return try_to_meet(target_, best.surface, scaled(middle, i == 0 ? 1 / kResolutionRatio : kResolutionRatio), step);
+    const bool looks_first = surface_->point_count() > kManyPoints;
+    std::vector<EncodingTrial> sides = all_of(kRatios.size(), [&, step = best.step](std::size_t i) {
+      const std::uint32_t samples = scaled(middle, kRatios[i]);
+      return looks_first ? try_step(target_, best.surface, samples, step)
+                         : try_to_meet(target_, best.surface, samples, step);
     });
+    const double own_cost = cost_at_equal_quality(target_, best);
     for (std::size_t side = 0; side < sides.size(); ++side) {
-      tell(sides[side]);
-      const double ratio = side == 0 ? 1 / kResolutionRatio : kResolutionRatio;
-      EncodingTrial trial = std::move(sides[side]);
+      if (looks_first && !(cost_at_equal_quality(target_, sides[side]) < own_cost - kLeastGain)) continue;
+      EncodingTrial trial =
+          looks_first ? at(best.surface, scaled(middle, kRatios[side]), best.step) : std::move(sides[side]);
+      if (!looks_first) tell(trial);
       for (int tried = 1; is_better(target_, trial, best); ++tried) {
         best = std::move(trial);
         if (tried >= most_resolutions() / 2) break;
-        trial = at(best.surface, scaled(best.samples_per_diagonal, ratio), best.step);
+        trial = at(best.surface, scaled(best.samples_per_diagonal, kRatios[side]), best.step);
       }
       if (best.samples_per_diagonal != middle) break;
     }
