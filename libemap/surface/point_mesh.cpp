@@ -1,6 +1,7 @@
 #include "libemap/surface/point_mesh.h"
 
 #include <CGAL/Advancing_front_surface_reconstruction.h>
+#include <CGAL/Delaunay_triangulation_3.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
 #include <algorithm>
@@ -8,6 +9,8 @@
 #include <cassert>
 #include <iterator>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "libemap/surface/boundary_edges.h"
 #include "libemap/surface/point_neighbours.h"
@@ -15,7 +18,8 @@
 namespace emap {
 namespace {
 
-using DelaunayPoint = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using DelaunayPoint = Kernel::Point_3;
 using Triangle = std::array<std::uint32_t, 3>;
 
 constexpr std::size_t kSpacingNeighbours = 8;
@@ -39,13 +43,49 @@ DelaunayPoint scattered(const Eigen::Vector3d& position, double spacing) {
           position.z() + size * scatter(position, 2)};
 }
 
+// Of the front's edges whose best triangles are equally good, CGAL takes the one whose record lies lower in memory, so
+// that the mesh differs from run to run. Here the numbers of the edge's points decide.
+template <class Base>
+class FrontVertex : public Base {
+ public:
+  using Base::Base;
+  template <class Triangulation>
+  struct Rebind_TDS {
+    using Other = FrontVertex<typename Base::template Rebind_TDS<Triangulation>::Other>;
+  };
+
+  // CGAL's name for an edge in the queue of the front.
+  struct Radius_ptr_type {
+    Radius_ptr_type(typename Base::criteria value, typename Base::IO_edge_type* edge) : first(value), second(edge) {
+      const auto& [cell, from, to] = edge->first.first;
+      ends = std::minmax(cell->vertex(from)->info(), cell->vertex(to)->info());
+    }
+    bool operator<(const Radius_ptr_type& other) const {
+      return std::tie(first, ends, second) < std::tie(other.first, other.ends, other.second);
+    }
+    typename Base::criteria first;
+    typename Base::IO_edge_type* second;
+    std::pair<std::size_t, std::size_t> ends;
+  };
+};
+
+using Triangulation =
+    CGAL::Delaunay_triangulation_3<Kernel,
+                                   CGAL::Triangulation_data_structure_3<
+                                       FrontVertex<CGAL::Advancing_front_surface_reconstruction_vertex_base_3<Kernel>>,
+                                       CGAL::Advancing_front_surface_reconstruction_cell_base_3<Kernel>>>;
+
 std::vector<Triangle> advancing_front(const std::vector<Eigen::Vector3d>& positions,
                                       const std::vector<double>& spacings) {
-  std::vector<DelaunayPoint> points;
+  std::vector<std::pair<DelaunayPoint, std::size_t>> points;
   points.reserve(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) points.push_back(scattered(positions[i], spacings[i]));
+  for (std::size_t i = 0; i < positions.size(); ++i) points.emplace_back(scattered(positions[i], spacings[i]), i);
+  Triangulation triangulation;
+  triangulation.insert(points.begin(), points.end());
+  CGAL::Advancing_front_surface_reconstruction<Triangulation> front(triangulation);
+  front.run();
   std::vector<std::array<std::size_t, 3>> found;
-  CGAL::advancing_front_surface_reconstruction(points.begin(), points.end(), std::back_inserter(found));
+  CGAL::write_triple_indices(std::back_inserter(found), front);
   std::vector<Triangle> triangles;
   triangles.reserve(found.size());
   for (const auto& [a, b, c] : found)
@@ -103,6 +143,13 @@ void turn_outwards(const std::vector<Eigen::Vector3d>& normals, Mesh& mesh) {
     if (agreement[part[i]] < 0) std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
 }
 
+// The front's triangles come in no order that would be the same each time.
+void put_in_order(std::vector<Triangle>& triangles) {
+  for (Triangle& triangle : triangles)
+    std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
+  std::sort(triangles.begin(), triangles.end());
+}
+
 }  // namespace
 
 Mesh mesh_of_points(const PointSet& points, const PointMeshOptions& options) {
@@ -115,6 +162,7 @@ Mesh mesh_of_points(const PointSet& points, const PointMeshOptions& options) {
   mesh.triangles = advancing_front(points.positions, spacings);
   drop_bridges(points.positions, spacings, options.reach, mesh.triangles);
   turn_outwards(points.normals, mesh);
+  put_in_order(mesh.triangles);
   return mesh;
 }
 
