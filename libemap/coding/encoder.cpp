@@ -31,9 +31,6 @@ constexpr double kFineError = 1.5e-4;    // below, other cuts gain little where 
 // Share of the error that scraps may make up, which saves patches of their own. Where it is much, rare large errors are
 // what is left of the surface's folds.
 constexpr double kScrapShare = 0.15;
-// Beyond, partitions take seconds: few others are tried, and only for large errors; beyond five times as many, only
-// where the first does not lead to the rate.
-constexpr std::size_t kManyPoints = 200000;
 constexpr std::size_t kMostPointsAtOnce = 2000000;  // of all tries that run at the same time
 constexpr std::size_t kMostAtOnce = 8;
 

@@ -14,7 +14,6 @@ namespace {
 
 using thin::Result;
 
-constexpr std::size_t kManyPoints = 200000;
 constexpr std::uint32_t kManySamples = 600;  // to the diagonal, of a model of many points
 constexpr std::int32_t kRoom = 6;            // samples in front of a patch, into which its seams may move
 constexpr std::uint32_t kMargin = 1;  // samples around each map; decides which of them interpolation leaves as they are

@@ -3,6 +3,7 @@
 // One try of the encoder: a surface cut in one way and sampled at one resolution, written at the step that comes to a
 // wanted rate or quality. Tries know nothing of each other and may run at the same time.
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -12,6 +13,10 @@
 #include "libemap/coding/surface_to_encode.h"
 
 namespace emap {
+
+// Beyond, partitions and tries take seconds each: fewer are made, and other cuts only for large errors; beyond five
+// times as many, only where the first does not lead to the rate.
+constexpr std::size_t kManyPoints = 200000;
 
 // What is wanted, and what all tries share.
 struct EncodingTarget {
