@@ -43,15 +43,34 @@ DelaunayPoint scattered(const Eigen::Vector3d& position, double spacing) {
           position.z() + size * scatter(position, 2)};
 }
 
-// Of the front's edges whose best triangles are equally good, CGAL takes the one whose record lies lower in memory, so
-// that the mesh differs from run to run. Here the numbers of the edge's points decide.
+// CGAL compares cells and vertices by where they lie in memory, which differs from run to run, unless they are
+// numbered.
+template <class Base>
+class Numbered : public Base {
+ public:
+  using Base::Base;
+  template <class Structure>
+  struct Rebind_TDS {
+    using Other = Numbered<typename Base::template Rebind_TDS<Structure>::Other>;
+  };
+
+  using Has_timestamp = CGAL::Tag_true;
+  std::size_t time_stamp() const { return number_; }
+  void set_time_stamp(std::size_t number) { number_ = number; }
+
+ private:
+  std::size_t number_ = static_cast<std::size_t>(-1);  // CGAL's "not yet"
+};
+
+// So it does with the front's edges whose best triangles are equally good; here the numbers of the edge's points
+// decide.
 template <class Base>
 class FrontVertex : public Base {
  public:
   using Base::Base;
-  template <class Triangulation>
+  template <class Structure>
   struct Rebind_TDS {
-    using Other = FrontVertex<typename Base::template Rebind_TDS<Triangulation>::Other>;
+    using Other = FrontVertex<typename Base::template Rebind_TDS<Structure>::Other>;
   };
 
   // CGAL's name for an edge in the queue of the front.
@@ -69,11 +88,9 @@ class FrontVertex : public Base {
   };
 };
 
-using Triangulation =
-    CGAL::Delaunay_triangulation_3<Kernel,
-                                   CGAL::Triangulation_data_structure_3<
-                                       FrontVertex<CGAL::Advancing_front_surface_reconstruction_vertex_base_3<Kernel>>,
-                                       CGAL::Advancing_front_surface_reconstruction_cell_base_3<Kernel>>>;
+using Vertex = Numbered<FrontVertex<CGAL::Advancing_front_surface_reconstruction_vertex_base_3<Kernel>>>;
+using Cell = Numbered<CGAL::Advancing_front_surface_reconstruction_cell_base_3<Kernel>>;
+using Triangulation = CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<Vertex, Cell>>;
 
 std::vector<Triangle> advancing_front(const std::vector<Eigen::Vector3d>& positions,
                                       const std::vector<double>& spacings) {
