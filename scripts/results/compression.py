@@ -1,6 +1,6 @@
 """Measures emap against the thesis and today's coders, and writes docs/results/compression.md with its pictures. Called by
-scripts/reproduce compression [PART...]; parts: partition, fit, distribution, thesis, curves-MODEL, no-floor, pictures, rival, speed
-(all of them unless named).
+scripts/reproduce compression [PART...]; parts: partition, fit, distribution, points-MODEL, meshes-MODEL, curves-MODEL, no-floor,
+pictures, rival, speed (all of them unless named).
 Each part's section is kept under build/results/compression with the commit that it measured; the page is put together once
 all of them are there."""
 
@@ -270,35 +270,38 @@ def distribution_part():
     return page + [""]
 
 
-def thesis_rows(kind, table, coders):
+THESIS_HEAD = ["| model | coder | bits per {} | patches | samples | masks, % | E_rms | dB | dB of the mesh | decoding, s | open edges | "
+               "thesis, dB |", "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+
+
+def thesis_rows(kind, name, table):
     options = ["--points"] if kind == "points" else []
-    for name, rows in table.items():
-        for rate, psnr in rows:
-            for coder in coders:
-                row = encode(name, "--bpp", rate, "--coder", coder, *options)
-                if row is None:
-                    yield f"| {name} | {coder} | {rate} | cannot | | | | | | | | {psnr} |"
-                    continue
-                if coder == "contexts":
-                    check(row["psnr"] >= psnr, f"{name} as {kind} at {rate}: {row['psnr']:.2f} dB, the thesis has {psnr}")
-                open_edges = "" if row["open_edges"] is None else row["open_edges"]
-                yield (f"| {name} | {coder} | {row['bits']:.3f} | {row['patches']} | {row['samples']} | {100 * row['mask_share']:.1f} | "
-                       f"{row['error']:.2f} | **{row['psnr']:.2f}** | {row['mesh_psnr']:.2f} | "
-                       f"{row['decode_seconds']:.2f} | {open_edges} | {psnr} |")
+    for rate, psnr in table[name]:
+        for coder in ("contexts", "baseline"):
+            row = encode(name, "--bpp", rate, "--coder", coder, *options)
+            if row is None:
+                yield f"| {name} | {coder} | {rate} | cannot | | | | | | | | {psnr} |"
+                continue
+            if coder == "contexts":
+                check(row["psnr"] >= psnr, f"{name} as {kind} at {rate}: {row['psnr']:.2f} dB, the thesis has {psnr}")
+            open_edges = "" if row["open_edges"] is None else row["open_edges"]
+            yield (f"| {name} | {coder} | {row['bits']:.3f} | {row['patches']} | {row['samples']} | {100 * row['mask_share']:.1f} | "
+                   f"{row['error']:.2f} | **{row['psnr']:.2f}** | {row['mesh_psnr']:.2f} | "
+                   f"{row['decode_seconds']:.2f} | {open_edges} | {psnr} |")
 
 
-def thesis_part():
-    print("the thesis's rates")
-    head = ["| model | coder | bits per {} | patches | samples | masks, % | E_rms | dB | dB of the mesh | decoding, s | open edges | "
-            "thesis, dB |", "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
-    page = ["## Points (table 4.2)", "", "The vertices alone are encoded, every byte of the file counted; the decoded points are "
+def points_part(name):
+    print(f"the thesis's rates, {name} as points")
+    return [f"## Points (table 4.2): {name}", "", "The vertices alone are encoded, every byte of the file counted; the decoded points are "
             "compared with the original mesh by `surfdist`, which takes them for planes through the nearest ones; then the closed "
-            "mesh of the same file, which is the surface that other coders have.", "", head[0].format("point"), head[1]]
-    page += list(thesis_rows("points", THESIS_POINTS, ["contexts", "baseline"]))
-    page += ["", "## Meshes (table 4.3)", "", "Open edges are those of the decoded, closed mesh that have one triangle.", "",
-             head[0].format("vertex"), head[1]]
-    page += list(thesis_rows("mesh", THESIS_MESH, ["contexts", "baseline"]))
-    return page + [""]
+            "mesh of the same file, which is the surface that other coders have.", "", THESIS_HEAD[0].format("point"), THESIS_HEAD[1],
+            *thesis_rows("points", name, THESIS_POINTS), ""]
+
+
+def meshes_part(name):
+    print(f"the thesis's rates, {name} as a mesh")
+    return [f"## Meshes (table 4.3): {name}", "", "Open edges are those of the decoded, closed mesh that have one triangle.", "",
+            THESIS_HEAD[0].format("vertex"), THESIS_HEAD[1], *thesis_rows("mesh", name, THESIS_MESH), ""]
 
 
 def draw_curves(name, curves):
@@ -434,7 +437,8 @@ def speed_part():
 
 
 PARTS = {"partition": partition_part, "fit": fit_part, "distribution": distribution_part,
-         "thesis": thesis_part, **{f"curves-{name}": functools.partial(curves_part, name) for name in CURVE_PSNR},
+         **{f"points-{name}": functools.partial(points_part, name) for name in THESIS_POINTS},
+         **{f"meshes-{name}": functools.partial(meshes_part, name) for name in THESIS_MESH}, **{f"curves-{name}": functools.partial(curves_part, name) for name in CURVE_PSNR},
          "no-floor": no_floor_part, "pictures": pictures_part, "rival": rival_part, "speed": speed_part}
 
 
