@@ -31,6 +31,12 @@ class CubeHash {
     });
   }
 
+  // Whether some cube that the box touches holds something.
+  bool touches(const Eigen::Vector3d& low, const Eigen::Vector3d& high) const {
+    bool any = false;
+    visit_cubes(low, high, [&](const Cube& cube) { any = any || table_[slot_of(cube)].first != kNone; });
+    return any;
+  }
   // Whether every cube that the box touches holds something.
   bool covers(const Eigen::Vector3d& low, const Eigen::Vector3d& high) const {
     bool all = true;

@@ -11,6 +11,7 @@
 #include "libemap/elevation/cube_hash.h"
 #include "libemap/elevation/triangle_crossing.h"
 #include "libemap/surface/boundary_edges.h"
+#include "libthin/foundation/parallel.h"
 
 namespace emap {
 namespace {
@@ -96,7 +97,16 @@ class GapFiller {
       surroundings_.mark(at(edge.from).cwiseMin(at(edge.to)).array() - reach,
                          at(edge.from).cwiseMax(at(edge.to)).array() + reach);
     }
+    std::vector<std::uint8_t> is_near(mesh_.triangles.size());
+    thin::parallel_ranges(is_near.size(), 8192, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const auto [low, high] = box_of(mesh_.triangles[i]);
+        is_near[i] = surroundings_.touches(low, high);
+      }
+    });
+    used_.reserve(8 * boundary.size());
     for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) {
+      if (!is_near[i]) continue;  // as are all at boundary vertices
       const Triangle& triangle = mesh_.triangles[i];
       const auto [low, high] = box_of(triangle);
       triangles_.add_where(surroundings_, i, low, high);
