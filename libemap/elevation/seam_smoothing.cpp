@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 #include "libemap/elevation/cube_hash.h"
 #include "libemap/elevation/gap_filling.h"
 #include "libemap/elevation/map_grid.h"
 #include "libemap/elevation/resampling.h"
+#include "libemap/surface/boundary_edges.h"
 #include "libemap/surface/mesh_normals.h"
 #include "libemap/surface/triangle_tree.h"
 #include "libthin/foundation/parallel.h"
@@ -186,21 +186,14 @@ bool restore_at_holes(const Mesh& mesh, const Partition& given, const ElevationM
 
 TriangleNeighbours triangle_neighbours(const Mesh& mesh) {
   TriangleNeighbours neighbours(mesh.triangles.size(), {kNoTriangle, kNoTriangle, kNoTriangle});
-  struct Side {
-    std::uint32_t triangle, side;
+  const auto add = [&](std::uint32_t triangle, std::uint32_t other) {
+    const auto free = std::find(neighbours[triangle].begin(), neighbours[triangle].end(), kNoTriangle);
+    if (free != neighbours[triangle].end()) *free = other;
   };
-  std::unordered_map<std::uint64_t, Side> open;
-  open.reserve(mesh.triangles.size());
-  for (std::uint32_t triangle = 0; triangle < mesh.triangles.size(); ++triangle)
-    for (std::uint32_t side = 0; side < 3; ++side) {
-      const auto [low, high] = std::minmax(mesh.triangles[triangle][side], mesh.triangles[triangle][(side + 1) % 3]);
-      const auto [found, is_new] = open.try_emplace(std::uint64_t{low} << 32 | high, Side{triangle, side});
-      if (is_new) continue;
-      const Side other = found->second;
-      neighbours[triangle][side] = other.triangle;
-      neighbours[other.triangle][other.side] = triangle;
-      open.erase(found);
-    }
+  for (const EdgePair& pair : edge_pairs(mesh)) {
+    add(pair.first_triangle, pair.second_triangle);
+    add(pair.second_triangle, pair.first_triangle);
+  }
   return neighbours;
 }
 

@@ -24,7 +24,8 @@ struct SeamSmoothingOptions {
   double hole = 0.4;  // spacings: what gap filling misses by more
 };
 
-// The neighbours of each triangle over its three edges; kNoTriangle where there is none.
+// The neighbours of each triangle over its edges, three at most, in no order of the edges; kNoTriangle where there are
+// fewer.
 constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
 using TriangleNeighbours = std::vector<std::array<std::uint32_t, 3>>;
 TriangleNeighbours triangle_neighbours(const Mesh& mesh);

@@ -143,7 +143,9 @@ void place_splat(vec3 p, vec3 n, float radius) {
 )";
 
 // Radii by (5.1), with which the discs of a flat map just touch in the middle of its squares: so a little wider, the
-// more so where they are seen from the side, and as much more as the list of splats asks for.
+// more so where they are seen from the side, and as much more as the list of splats asks for. Sheer samples have the
+// discs of less steep ones: a wrong normal among them would else be a disc of many samples' size, upright on the
+// surface.
 constexpr const char* kMapSplatVertex = R"(
 uniform float widening;
 uniform int first_row;
@@ -158,7 +160,7 @@ void main() {
   vec3 n = eye_from_plane * over_plane;
   float facing = -dot(n, p) * inversesqrt(dot(p, p));
   float wider = widening * (1.01 + 0.02 / max(facing, 0.08));
-  place_splat(p, n, wider * 0.70710678 * spacing / (0.1 + 0.9 * max(over_plane.z, 0.0)));
+  place_splat(p, n, wider * 0.70710678 * spacing / (0.1 + 0.9 * max(over_plane.z, gentlest_cosine)));
 }
 )";
 
@@ -516,6 +518,7 @@ void main() {{
 
 std::string vertex_of(Stage stage) {
   const std::string map = std::string(kNormalCode) + kMapCode;
+  const std::string gentlest = fmt::format("const float gentlest_cosine = {};\n", kGentlestCosine);
   switch (stage) {
     case Stage::map_mesh:
       return map + kPositionCode + kMapMeshVertex;
@@ -530,13 +533,13 @@ std::string vertex_of(Stage stage) {
     case Stage::map_interpolated:
     case Stage::map_visibility:
     case Stage::map_accumulation:
-      return map + kSplatVertex + kMapSplatVertex;
+      return map + gentlest + kSplatVertex + kMapSplatVertex;
     case Stage::plain_splats:
     case Stage::plain_visibility:
     case Stage::plain_accumulation:
       return std::string(kNormalCode) + kSplatVertex + kPlainSplatVertex;
     case Stage::map_identity:
-      return map + fmt::format("const float gentlest_cosine = {};\n", kGentlestCosine) + kSquareVertex;
+      return map + gentlest + kSquareVertex;
     case Stage::normalisation:
     case Stage::map_resolve:
       return kWholePictureVertex;

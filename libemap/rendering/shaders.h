@@ -35,8 +35,9 @@ enum class Stage {
   normalisation,  // the sums to normals, shaded; over the whole picture
 };
 
-// Squares of Stage::map_identity are no steeper over their base plane than this, whatever their normal says.
-constexpr double kGentlestCosine = 0.1;
+// Splats of maps are no steeper over their base plane than this, whatever their normal says: neither the discs, for
+// their radius (5.1), nor the squares of Stage::map_identity.
+constexpr double kGentlestCosine = 0.2;
 
 struct ShaderSources {
   std::string vertex, fragment;

@@ -270,6 +270,44 @@ TEST_P(RendererTest, CoarserLevelsAndWiderDiscsHaveNoHoles) {
   }
 }
 
+// The normals at a sheer rim say that discs by (5.1) must be very large; they stand upright there.
+TEST_P(RendererTest, SheerRimsHaveNoDiscsAboveThem) {
+  constexpr std::uint32_t kColumns = 60;
+  constexpr double kWall = 11, kFarthest = 5.5;  // samples: the rim's height, and how far a disc may reach beyond
+  Scene from = scene("torus");
+  ElevationPatch patch;
+  patch.columns = patch.rows = kColumns;
+  patch.mask.assign(kColumns * kColumns, 1);
+  patch.elevation.assign(kColumns * kColumns, 0);
+  for (std::size_t place = kColumns - 1; place < patch.elevation.size(); place += kColumns)
+    patch.elevation[place] = kWall;
+  from.maps.patches = {patch};
+  from.maps.spacing = 1;
+  from.box = {{0, 0, 0}, {kColumns - 1, kColumns - 1, kWall}};
+  const Camera from_the_side{.azimuth_degrees = 90, .elevation_degrees = 0, .distance = 2.4};
+  const test::RayCaster caster(closed_mesh(from.maps).mesh, from.box);
+  const auto rays = caster.trace(View(from_the_side, kSide, kSide));
+  const double pixels = kSide / (2 * 2.4 * std::tan(std::numbers::pi / 12) * from.box.diagonal());  // of a sample
+  const int reach = static_cast<int>(std::ceil(kFarthest * pixels));
+  for (const Mode mode : {Mode::splats, Mode::splats_blended, Mode::splats_interpolated}) {
+    SCOPED_TRACE(static_cast<int>(mode));
+    const DeepImage image = normals_of(from, {.mode = mode}, use_of(mode), from_the_side);
+    int drawn = 0, far_beside = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < kSide; ++x) {
+        if (image.pixel(x, y)[3] == 0) continue;
+        ++drawn;
+        bool is_near = false;
+        for (int v = std::max(y - reach, 0); v <= std::min(y + reach, kSide - 1); ++v)
+          for (int u = std::max(x - reach, 0); u <= std::min(x + reach, kSide - 1); ++u)
+            is_near |= rays[static_cast<std::size_t>(v * kSide + u)].hit;
+        far_beside += !is_near;
+      }
+    EXPECT_GT(drawn, 500);
+    EXPECT_EQ(far_beside, 0);
+  }
+}
+
 // What lies just outside a close view reaches into it as in a wider one: the middle of the wider is the close one.
 TEST_P(RendererTest, ACloseViewsBordersAreThoseOfAWiderView) {
   const Scene& from = scene("sphere");
