@@ -22,6 +22,8 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
 import numpy as np  # noqa: E402
+import parts  # noqa: E402
+from parts import check  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BIN = ROOT / "build/release/bin"
@@ -52,15 +54,6 @@ PICTURE_BITS = {"igea": [0.1, 0.38], "dragon": [0.15, 0.95]}
 RIVAL_PSNR = {"igea": [70, 80], "bunny": [70, 80], "dragon": [75]}
 INK = {"contexts": "#0b5394", "baseline": "#6fa8dc", "lt+draco": "#cc4125", "draco": "#999999", "gpcc_octree": "#b4a7d6",
        "gltfpack-cz+xz": "#f1c232", "thesis": "#38761d"}
-
-problems = []
-
-
-def check(condition, what):
-    if not condition:
-        problems.append(what)
-        print("FAILED:", what, file=sys.stderr)
-    return condition
 
 
 def run(*words):
@@ -438,60 +431,28 @@ def speed_part():
 
 PARTS = {"partition": partition_part, "fit": fit_part, "distribution": distribution_part,
          **{f"points-{name}": functools.partial(points_part, name) for name in THESIS_POINTS},
-         **{f"meshes-{name}": functools.partial(meshes_part, name) for name in THESIS_MESH}, **{f"curves-{name}": functools.partial(curves_part, name) for name in CURVE_PSNR},
+         **{f"meshes-{name}": functools.partial(meshes_part, name) for name in THESIS_MESH},
+         **{f"curves-{name}": functools.partial(curves_part, name) for name in CURVE_PSNR},
          "no-floor": no_floor_part, "pictures": pictures_part, "rival": rival_part, "speed": speed_part}
 
 
-def commit():
-    return subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True, check=False).stdout.strip()
-
-
-def measure(name):
-    """Runs a part, and keeps what it says."""
-    global WORK
-    WORK = BASE / name
-    shutil.rmtree(WORK, ignore_errors=True)
-    WORK.mkdir(parents=True)
-    problems.clear()
-    began = time.perf_counter()
-    lines = PARTS[name]()
-    told = {"lines": lines, "problems": list(problems), "minutes": (time.perf_counter() - began) / 60, "commit": commit()}
-    (BASE / f"{name}.json").write_text(json.dumps(told), encoding="utf-8")
-
-
-def write_page(parts):
-    page = ["# Compression of scanned surfaces", "",
-            f"Written by `scripts/reproduce compression`. Machine: {os.cpu_count()} cores, {platform.machine()}. E_rms in 1e-4 of the bounding "
-            "box's diagonal; PSNR = 20 log10(diagonal / E_rms); distances by "
-            + ("`surfdist`, an independent tool" if SURFDIST else "`emap compare`") + ", 200,000 samples each way.", ""]
-    for part in parts.values():
-        page += part["lines"]
-    if short := [problem for part in parts.values() for problem in part["problems"]]:
-        page += ["## What falls short", ""] + [f"- {problem}" for problem in short] + [""]
-    page += ["Minutes, and the commit that was measured: " +
-             ", ".join(f"{name} {part['minutes']:.1f} ({part['commit']})" for name, part in parts.items()) + ".", ""]
-    PAGE.write_text("\n".join(page), encoding="utf-8")
-    print("written:", PAGE)
-    return short
-
-
 def main():
-    global SURFDIST
+    global SURFDIST, WORK
     if not MODELS.is_dir():
         sys.exit(f"no models at {MODELS}; set THIN_SHARED_DATA")
-    named = sys.argv[1:] or list(PARTS)
-    if unknown := set(named) - set(PARTS):
-        sys.exit(f"no such part: {', '.join(sorted(unknown))}; there are {', '.join(PARTS)}")
+    named = parts.named_parts(sys.argv[1:], PARTS)
     BASE.mkdir(parents=True, exist_ok=True)
     SURFDIST = build_surfdist()
     for name in named:
-        measure(name)
-    kept = {name: BASE / f"{name}.json" for name in PARTS}
-    if missing := [name for name, path in kept.items() if not path.is_file()]:
-        print("The page waits for:", ", ".join(missing))
-        return
-    if short := write_page({name: json.loads(path.read_text(encoding="utf-8")) for name, path in kept.items()}):
-        sys.exit(f"{len(short)} checks failed")
+        WORK = BASE / name
+        shutil.rmtree(WORK, ignore_errors=True)
+        WORK.mkdir(parents=True)
+        parts.measure(name, PARTS[name], BASE, ROOT)
+    heading = ["# Compression of scanned surfaces", "",
+               f"Written by `scripts/reproduce compression`. Machine: {os.cpu_count()} cores, {platform.machine()}. E_rms in 1e-4 of the bounding "
+               "box's diagonal; PSNR = 20 log10(diagonal / E_rms); distances by "
+               + ("`surfdist`, an independent tool" if SURFDIST else "`emap compare`") + ", 200,000 samples each way.", ""]
+    parts.write_page(PAGE, heading, PARTS, BASE)
 
 
 SURFDIST = None

@@ -12,10 +12,11 @@ import platform
 import struct
 import subprocess
 import sys
-import time
 import zlib
 
 import numpy as np
+import parts
+from parts import check
 from PIL import Image
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -55,14 +56,6 @@ QUICK = "--quick" in sys.argv[1:]
 SECONDS = 1 if QUICK else 2
 ROUNDS = 1 if QUICK else 3
 SIDE = 512 if QUICK else 1024
-
-problems = []
-
-
-def check(condition, what):
-    if not condition:
-        problems.append(what)
-        print("FALLS SHORT:", what, file=sys.stderr)
 
 
 def run(*words):
@@ -405,52 +398,23 @@ PARTS = {"maps": maps_part, **{f"accuracy-{name}": functools.partial(accuracy_pa
          "sphere": sphere_part, "rates": rates_part, "levels": levels_part, "figures": figures_part, "page": page_part}
 
 
-def commit():
-    return subprocess.run(["git", "describe", "--always", "--dirty"], cwd=ROOT, capture_output=True, text=True, check=False).stdout.strip()
-
-
-def measure(name):
-    """Runs a part, and keeps what it says."""
+def measured(name):
     if missing := [encoded for encoded in ENCODINGS if name != "maps" and not packed(encoded).is_file()]:
         sys.exit(f"{', '.join(missing)} are not encoded yet: run the part maps first")
-    problems.clear()
-    began = time.perf_counter()
-    lines = PARTS[name]()
-    told = {"lines": lines, "problems": list(problems), "minutes": (time.perf_counter() - began) / 60, "commit": commit(),
-            "load": os.getloadavg()[0]}
-    (WORK / f"{name}.json").write_text(json.dumps(told), encoding="utf-8")
-
-
-def write_page(parts):
-    page = ["# Rendering of elevation maps", "",
-            f"Written by `scripts/reproduce rendering`. Machine: {os.cpu_count()} cores, {platform.machine()}.", ""]
-    for part in parts.values():
-        page += part["lines"]
-    if short := [problem for part in parts.values() for problem in part["problems"]]:
-        page += ["## What falls short", ""] + [f"- {problem}" for problem in short] + [""]
-    page += ["Minutes, the machine's load at the end, and the commit that was measured: " +
-             ", ".join(f"{name} {part['minutes']:.1f} ({part['load']:.1f}, {part['commit']})" for name, part in parts.items()) + ".", ""]
-    PAGE.write_text("\n".join(page), encoding="utf-8")
-    print("written:", PAGE)
-    return short
+    parts.measure(name, PARTS[name], WORK, ROOT)
 
 
 def main():
     if not MODELS.is_dir():
         sys.exit(f"no models at {MODELS}; set THIN_SHARED_DATA")
-    named = [word for word in sys.argv[1:] if word != "--quick"] or list(PARTS)
-    if unknown := set(named) - set(PARTS):
-        sys.exit(f"no such part: {', '.join(sorted(unknown))}; there are {', '.join(PARTS)}")
+    named = parts.named_parts([word for word in sys.argv[1:] if word != "--quick"], PARTS)
     WORK.mkdir(parents=True, exist_ok=True)
     PICTURES.mkdir(parents=True, exist_ok=True)
     for name in named:
-        measure(name)
-    kept = {name: WORK / f"{name}.json" for name in PARTS}
-    if missing := [name for name, path in kept.items() if not path.is_file()]:
-        print("The page waits for:", ", ".join(missing))
-        return
-    if short := write_page({name: json.loads(path.read_text(encoding="utf-8")) for name, path in kept.items()}):
-        sys.exit(f"{len(short)} goals are missed; docs/results/rendering.md lists them")
+        measured(name)
+    heading = ["# Rendering of elevation maps", "",
+               f"Written by `scripts/reproduce rendering`. Machine: {os.cpu_count()} cores, {platform.machine()}.", ""]
+    parts.write_page(PAGE, heading, PARTS, WORK)
 
 
 if __name__ == "__main__":
