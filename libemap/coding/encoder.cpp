@@ -44,6 +44,8 @@ struct Cut {
 // more than can be told beforehand.
 constexpr std::array kCuts = {Cut{70, 60}, Cut{70, 20}, Cut{65, 60}, Cut{60, 99}, Cut{70, 2}, Cut{80, 2}};
 constexpr std::array kCutsOfManyPoints = {Cut{70, 60}, Cut{80, 2}};
+// Where the target is not met: of meshes of a few triangles, smoothing leaves nothing.
+constexpr Cut kUnsmoothedCut = {80, 0};
 
 class Search {
  public:
@@ -169,6 +171,7 @@ class Search {
     if (target_.is_quality() && !best.meets_target && has_many_points) return best;
     std::vector<Cut> cuts = has_many_points ? std::vector(kCutsOfManyPoints.begin(), kCutsOfManyPoints.end())
                                             : std::vector(kCuts.begin(), kCuts.end());
+    if (!best.meets_target) cuts.push_back(kUnsmoothedCut);
     std::vector<EncodingTrial> looks = looked_at(cuts, 0, error, best);
     if (!has_many_points) {
       const std::size_t known = cuts.size();

@@ -159,6 +159,19 @@ TEST(Encoder, PointsDecodeToAMeshWithoutHoles) {
   EXPECT_LT(closed.filling.edges_left, closed.mesh.triangles.size() / 1000);
 }
 
+// Normals that are smoothed say that these three triangles are one sheet.
+TEST(Encoder, MeshesOfAFewTrianglesReachTheirQuality) {
+  const Mesh fan{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}}, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}}};
+  const auto surface = mesh_to_encode(fan, {}, kSamples);
+  ASSERT_TRUE(surface.ok()) << surface.error().message;
+  EncoderOptions options;
+  options.psnr_db = 60;
+  options.may_repartition = true;
+  const auto encoded = encode_surface(**surface, options);
+  ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+  EXPECT_GT(psnr_of(fan, encoded->stream), 60 - kSampling_db);
+}
+
 TEST(Encoder, DegenerateInputIsAnErrorOrAResult) {
   const auto try_to_encode = [](Mesh mesh) {
     const auto surface = mesh_to_encode(std::move(mesh), {}, kSamples);
